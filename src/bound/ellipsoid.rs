@@ -1,0 +1,65 @@
+use glam::{Mat3, Vec3};
+
+use crate::{Error, error};
+
+/// An ellipsoid, its surface included: {c + R diag(semi-axes) y : ‖y‖ ≤ 1}.
+///
+/// The one shape that all bounds which are not spheres become before they meet a view. It is empty
+/// if its semi-axes are zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipsoid {
+    center: Vec3,
+    rotation: Mat3,
+    semi_axes: Vec3,
+}
+
+impl Ellipsoid {
+    /// The ellipsoid around `center` whose axes are the columns of `rotation`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Vector`] if `center` is not finite or `semi_axes` are not finite, positive and
+    /// within a ratio of 2³⁰ of each other; [`Error::Matrix`] if the columns of `rotation` are not
+    /// orthonormal to 10⁻⁶.
+    pub fn new(center: Vec3, rotation: Mat3, semi_axes: Vec3) -> Result<Self, Error> {
+        let center = error::finite("ellipsoid centre", center)?;
+        let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
+        if !(semi_axes.is_finite() && shortest > 0.0 && longest / shortest <= 1_073_741_824.0) {
+            return Err(Error::Vector {
+                quantity: "semi-axes",
+                value: semi_axes,
+                valid: "finite, positive and within a ratio of 2³⁰ of each other",
+            });
+        }
+        error::orthonormal("ellipsoid rotation", rotation, 1e-6)?;
+        Ok(Self::from_parts(center, rotation, semi_axes))
+    }
+
+    pub(super) fn from_parts(center: Vec3, rotation: Mat3, semi_axes: Vec3) -> Self {
+        Self {
+            center,
+            rotation,
+            semi_axes,
+        }
+    }
+
+    /// The centre c.
+    pub fn center(&self) -> Vec3 {
+        self.center
+    }
+
+    /// R, whose columns are the directions of the axes.
+    pub fn rotation(&self) -> Mat3 {
+        self.rotation
+    }
+
+    /// The semi-axes, in the order of the columns of [`rotation`](Self::rotation).
+    pub fn semi_axes(&self) -> Vec3 {
+        self.semi_axes
+    }
+
+    /// Whether nothing lies inside.
+    pub fn is_empty(&self) -> bool {
+        self.semi_axes == Vec3::ZERO
+    }
+}

@@ -1,0 +1,56 @@
+//! What encloses a light's isosurface.
+//!
+//! The isosurface of light is {√(Φ·value(ω)/(δξ))·ω}, so its shape is the lobe's alone: a lobe is
+//! bounded once for unit scale and at the origin ([`Bounded`]), and each frame's ξ scales the bound
+//! and puts it in place ([`Bound`]). Each step rounds outward.
+
+mod constant;
+mod ellipsoid;
+mod ggx;
+mod lambert;
+mod sphere;
+mod spheroid;
+
+pub use ellipsoid::Ellipsoid;
+pub use sphere::Sphere;
+pub use spheroid::Spheroid;
+
+use glam::Vec3;
+
+use crate::{Lobe, Roulette, Vpl, Xi};
+
+/// A lobe whose isosurface has a closed bound.
+pub trait Bounded: Lobe {
+    /// The shape of the bound.
+    type Bound: Bound;
+
+    /// A shape that contains the unit isosurface {√value(ω)·ω : ω a unit vector}, for a light at
+    /// the origin.
+    fn unit_bound(&self) -> Self::Bound;
+}
+
+/// A shape around a light.
+pub trait Bound: Copy {
+    /// The shape scaled by `scale ≥ 0` about the origin and then moved by `position`, rounded
+    /// outward. Scaled by zero it is [empty](Self::is_empty).
+    fn placed(self, position: Vec3, scale: f32) -> Self;
+
+    /// Whether nothing lies inside: the light reaches nowhere.
+    fn is_empty(&self) -> bool;
+}
+
+impl<L: Bounded> Vpl<L> {
+    /// The bound of everything that accepts this light in a frame with `roulette` and `xi`.
+    ///
+    /// For a light that does not change, keep [`unit_bound`](Bounded::unit_bound) and place that
+    /// anew each frame.
+    pub fn bound(&self, roulette: &Roulette, xi: Xi) -> L::Bound {
+        let scale = roulette.scale(self.flux(), xi);
+        self.lobe().unit_bound().placed(self.position(), scale)
+    }
+}
+
+/// What `x + y` can differ from its exact value by, in each component, is at most this length.
+fn rounding_of_sum(sum: Vec3) -> f32 {
+    2.0 * crate::math::UNIT_ROUNDOFF * sum.abs().max_element()
+}

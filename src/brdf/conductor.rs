@@ -1,0 +1,66 @@
+use super::Fresnel;
+use crate::{Error, error, math};
+
+/// Unpolarised light at a smooth absorbing surface, a metal, with complex index η + iκ.
+///
+/// The same form as [`Dielectric`](super::Dielectric) with w = a + ib = √((η + iκ)² − s²):
+///
+/// F = ½ |1 − (η + iκ)²|²/|c + w|⁴ (1 + |cw − s²|²/|cw + s²|²).
+///
+/// Its quasi-convexity in θ_h, which [`maximum`](Fresnel::maximum) needs, is known numerically (a
+/// search over η and κ found no exception), not proved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conductor {
+    index: f32,
+    extinction: f32,
+}
+
+impl Conductor {
+    /// A metal with refractive index `index` = η and extinction coefficient `extinction` = κ, both
+    /// relative to the medium in front of it. Gold at 650 nm has η = 0.16, κ = 3.5.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `index` is outside \[10⁻⁹, 10⁹\], `extinction` outside \[0, 10⁹\], or
+    /// either is NaN.
+    pub fn new(index: f32, extinction: f32) -> Result<Self, Error> {
+        Ok(Self {
+            index: error::number_in("refractive index η", index, "in [1e-9, 1e9]", 1e-9..=1e9)?,
+            extinction: error::number_in(
+                "extinction coefficient κ",
+                extinction,
+                "in [0, 1e9]",
+                0.0..=1e9,
+            )?,
+        })
+    }
+}
+
+impl Fresnel for Conductor {
+    #[inline]
+    fn reflectance(&self, half_angle_cosine: f32) -> f32 {
+        let (eta, kappa, c) = (self.index, self.extinction, half_angle_cosine);
+        let s_squared = (1.0 - c) * (1.0 + c);
+        // w² = real + i·imaginary. Of the two roots the larger is taken first, and the other from
+        // 2ab = imaginary, so that neither cancels.
+        let real = c * c + ((eta - 1.0) * (eta + 1.0) - kappa * kappa);
+        let half_imaginary = eta * kappa;
+        let modulus = math::sqrt(real * real + 4.0 * half_imaginary * half_imaginary);
+        let larger = math::sqrt(0.5 * (modulus + real.abs()));
+        let smaller = half_imaginary / larger.max(f32::MIN_POSITIVE);
+        let (a, b) = if real > 0.0 {
+            (larger, smaller)
+        } else {
+            (smaller, larger)
+        };
+
+        let kappa_squared = kappa * kappa;
+        let sum = (a + c) * (a + c) + b * b;
+        let perpendicular = (((1.0 - eta) * (1.0 - eta) + kappa_squared) / sum)
+            * (((1.0 + eta) * (1.0 + eta) + kappa_squared) / sum);
+        let cb_squared = c * c * b * b;
+        let (minus, plus) = (c * a - s_squared, c * a + s_squared);
+        let polarisation = (minus * minus + cb_squared) / (plus * plus + cb_squared);
+        (0.5 * perpendicular * (1.0 + polarisation)).min(1.0)
+    }
+}

@@ -1,0 +1,102 @@
+use core::f32::consts::FRAC_1_PI;
+
+use glam::Vec3;
+
+use crate::{Error, error, math};
+
+/// The GGX microsurface of roughness α: how its facets are distributed and how they mask each
+/// other [Walter et al. 2007; Trowbridge & Reitz 1975].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ggx {
+    roughness: f32,
+}
+
+impl Ggx {
+    /// The least roughness accepted, 2⁻²⁰ ≈ 9.5·10⁻⁷. Below it the lobe is narrower than the
+    /// spacing of `f32` directions.
+    pub const MIN_ROUGHNESS: f32 = 9.536_743e-7;
+
+    /// A microsurface with `roughness` = α; most engines show artists √α, the *perceptual*
+    /// roughness.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `roughness` is outside \[[`Self::MIN_ROUGHNESS`], 1\] or NaN. A perfect
+    /// mirror, α = 0, has no radiant intensity to bound.
+    pub fn new(roughness: f32) -> Result<Self, Error> {
+        error::number_in(
+            "roughness α",
+            roughness,
+            "in (0, 1], and at least 2⁻²⁰",
+            Self::MIN_ROUGHNESS..=1.0,
+        )
+        .map(|roughness| Self { roughness })
+    }
+
+    /// α.
+    pub fn roughness(self) -> f32 {
+        self.roughness
+    }
+
+    /// The NDF D(cosθ_m) in sr⁻¹: the area of microfacets per solid angle of their normals
+    /// [Tokuyoshi & Harada 2017, Eq. 7].
+    ///
+    /// `cosine` = cosθ_m in \[−1, 1\]; zero for cosθ_m ≤ 0 and NaN. The largest value, 1/(πα²), is
+    /// at cosθ_m = 1. A rounded cosine cannot resolve a lobe narrower than about 10⁻³ radians:
+    /// where the half vector is known, use [`ndf_at`](Self::ndf_at).
+    pub fn ndf(self, cosine: f32) -> f32 {
+        if cosine > 0.0 {
+            let cosine_squared = cosine * cosine;
+            self.ndf_of_squares(cosine_squared, (1.0 - cosine) * (1.0 + cosine), 1.0)
+        } else {
+            0.0
+        }
+    }
+
+    /// The NDF in sr⁻¹ at `half_vector`, of any finite length, on a surface with unit `normal`.
+    ///
+    /// As accurate as the vectors themselves: sin²θ_m comes from their cross product, not from
+    /// 1 − cos²θ_m. Zero at and below the horizon, and for NaN.
+    #[inline]
+    pub fn ndf_at(self, half_vector: Vec3, normal: Vec3) -> f32 {
+        let cosine = half_vector.dot(normal);
+        if cosine > 0.0 {
+            self.ndf_of_squares(
+                cosine * cosine,
+                half_vector.cross(normal).length_squared(),
+                half_vector.length_squared(),
+            )
+        } else {
+            0.0
+        }
+    }
+
+    /// D = α²/(π (α²c² + s²)²), c² and s² given as shares of `length_squared`.
+    #[inline]
+    fn ndf_of_squares(self, cosine_squared: f32, sine_squared: f32, length_squared: f32) -> f32 {
+        let alpha_squared = self.roughness * self.roughness;
+        let spread = (alpha_squared * cosine_squared + sine_squared) / length_squared;
+        // At least α² but for rounding, which at lengths that underflow can be all there is.
+        let spread = spread.max(alpha_squared);
+        FRAC_1_PI * (alpha_squared / spread) / spread
+    }
+
+    /// √(kμ² + α²), k = 1 − α²: the root of Smith's masking functions, in \[α, 1\].
+    #[inline]
+    pub(super) fn masking_root(self, cosine: f32) -> f32 {
+        let alpha = self.roughness;
+        math::sqrt((1.0 - alpha) * (1.0 + alpha) * cosine * cosine + alpha * alpha)
+    }
+
+    /// Smith's masking function G1(μ) = 2μ/(μ + √(kμ² + α²)), k = 1 − α²
+    /// [Tokuyoshi & Harada 2017, Eq. 8]: the visible share of the facets that face the viewer.
+    ///
+    /// In \[0, 1\] for `cosine` = μ in (0, 1]; zero for μ ≤ 0 and NaN.
+    pub fn masking(self, cosine: f32) -> f32 {
+        if cosine > 0.0 {
+            2.0 * cosine / (cosine + self.masking_root(cosine))
+        } else {
+            0.0
+        }
+    }
+}

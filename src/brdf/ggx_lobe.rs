@@ -1,0 +1,148 @@
+use core::marker::PhantomData;
+
+use glam::{Mat3, Vec3};
+
+use super::{Fresnel, Ggx, HeightCorrelated, Lobe, MaskingShadowing, NoFresnel, Separable};
+use crate::{Direction, math};
+
+/// The GGX microfacet lobe for light from one direction [Tokuyoshi & Harada 2017, Eq. 6].
+///
+/// f·max(μ_o, 0) = F(ω_i·ω_h) G2(μ, μ_o) D(ω_h·n)/(4μ), with the [`Fresnel`] factor `F` and the
+/// [`MaskingShadowing`] function `G`. Empty, zero in every direction, if the light arrives from
+/// below the surface or along it.
+///
+/// ```
+/// use stochastic_light_culling::{Direction, Ggx, GgxLobe, Lobe, Schlick, glam::Vec3};
+///
+/// let gold = GgxLobe::new(
+///     Ggx::new(0.2)?,
+///     Schlick::new(0.9)?,
+///     Direction::Z,
+///     Direction::new(Vec3::new(-1.0, 0.0, 1.0))?,
+/// );
+/// let mirror = Vec3::from(Direction::new(Vec3::new(1.0, 0.0, 1.0))?);
+/// assert!(gold.value(mirror) > gold.value(Vec3::Z));
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GgxLobe<F = NoFresnel, G = HeightCorrelated> {
+    ggx: Ggx,
+    fresnel: F,
+    normal: Direction,
+    incoming: Direction,
+    /// μ; zero if the light arrives from below.
+    incident_cosine: f32,
+    /// √(kμ² + α²)
+    incident_root: f32,
+    masking_shadowing: PhantomData<G>,
+}
+
+impl<F: Fresnel> GgxLobe<F> {
+    /// The lobe, with height-correlated masking and shadowing, of a surface with unit `normal` = n
+    /// for light from the unit direction `incoming` = ω_i. Both point away from the surface.
+    pub fn new(ggx: Ggx, fresnel: F, normal: Direction, incoming: Direction) -> Self {
+        let incident_cosine = (math::dot(*normal, *incoming) as f32).clamp(0.0, 1.0);
+        Self {
+            ggx,
+            fresnel,
+            normal,
+            incoming,
+            incident_cosine,
+            incident_root: ggx.masking_root(incident_cosine),
+            masking_shadowing: PhantomData,
+        }
+    }
+
+    /// The same lobe with [`Separable`] masking and shadowing.
+    pub fn separable(self) -> GgxLobe<F, Separable> {
+        let Self {
+            ggx,
+            fresnel,
+            normal,
+            incoming,
+            incident_cosine,
+            incident_root,
+            ..
+        } = self;
+        GgxLobe {
+            ggx,
+            fresnel,
+            normal,
+            incoming,
+            incident_cosine,
+            incident_root,
+            masking_shadowing: PhantomData,
+        }
+    }
+}
+
+impl<F: Fresnel, G> GgxLobe<F, G> {
+    /// The microsurface.
+    pub fn ggx(&self) -> Ggx {
+        self.ggx
+    }
+
+    /// μ = ω_i·n in \[0, 1\]; 0 means that the lobe is empty.
+    pub fn incident_cosine(&self) -> f32 {
+        self.incident_cosine
+    }
+
+    /// F_max, the largest Fresnel factor that any direction above the surface can have.
+    pub fn max_fresnel(&self) -> f32 {
+        self.fresnel.maximum(self.incident_cosine)
+    }
+
+    /// G1(μ)/(4μ) = 1/(2(μ + √(kμ² + α²))), which stays finite at grazing incidence.
+    pub(crate) fn masking_over_four_cosines(&self) -> f32 {
+        0.5 / (self.incident_cosine + self.incident_root)
+    }
+
+    /// ω_u = 2μn − ω_i, the direction of mirror reflection.
+    ///
+    /// Reckoned in `f64`, since at small α an angular error φ costs a bound the share φ/(2α).
+    pub fn mirror_direction(&self) -> Direction {
+        let (n, w) = (self.normal.as_f64(), self.incoming.as_f64());
+        let twice =
+            2.0 * math::dot(*self.normal, *self.incoming) / math::dot(*self.normal, *self.normal);
+        Direction::from_unit(Vec3::from_array(core::array::from_fn(|i| {
+            (twice * n[i] - w[i]) as f32
+        })))
+    }
+
+    /// The rotation \[ω_u, ω_v, ω_w\] from the lobe's own axes to world space: ω_w = unit(ω_u × n)
+    /// is perpendicular to the plane of incidence, and ω_v = ω_w × ω_u
+    /// [Tokuyoshi & Harada 2017, Eq. 14].
+    ///
+    /// At normal incidence, where any such frame will do, an arbitrary one.
+    pub fn rotation(&self) -> Mat3 {
+        let u = *self.mirror_direction();
+        // ω_u × n = n × ω_i, without the rounding of ω_u.
+        let w = Direction::new(self.normal.cross(*self.incoming))
+            .map_or_else(|_| u.any_orthonormal_vector(), Vec3::from);
+        // Near normal incidence the cross product is mostly rounding, which is not orthogonal to ω_u.
+        let w = (w - u * u.dot(w)).try_normalize();
+        let w = w.unwrap_or_else(|| u.any_orthonormal_vector());
+        Mat3::from_cols(u, w.cross(u), w)
+    }
+}
+
+impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
+    #[inline]
+    fn value(&self, outgoing: Vec3) -> f32 {
+        let outgoing_cosine = self.normal.dot(outgoing);
+        if !(outgoing_cosine > 0.0 && self.incident_cosine > 0.0) {
+            return 0.0;
+        }
+        let half_vector = *self.incoming + outgoing;
+        // ω_i·ω_h is half the length of ω_i + ω_o.
+        let half_angle_cosine = (0.5 * math::sqrt(half_vector.length_squared())).min(1.0);
+        self.fresnel.reflectance(half_angle_cosine)
+            * self.ggx.ndf_at(half_vector, *self.normal)
+            * G::over_four_incident_cosines(
+                self.incident_cosine,
+                self.incident_root,
+                outgoing_cosine,
+                self.ggx.masking_root(outgoing_cosine),
+            )
+    }
+}

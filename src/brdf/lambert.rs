@@ -1,0 +1,42 @@
+use core::f32::consts::FRAC_1_PI;
+
+use glam::Vec3;
+
+use super::Lobe;
+use crate::{Direction, Error, error};
+
+/// Lambert's lobe: the same radiance in every direction, f = ρ/π.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LambertLobe {
+    albedo: f32,
+    normal: Direction,
+}
+
+impl LambertLobe {
+    /// The lobe of a surface that reflects the share `albedo` = ρ of the light, around `normal`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `albedo` is outside \[0, 1\] or NaN.
+    pub fn new(albedo: f32, normal: Direction) -> Result<Self, Error> {
+        error::number_in("albedo", albedo, "in [0, 1]", 0.0..=1.0)
+            .map(|albedo| Self { albedo, normal })
+    }
+
+    /// The share of light reflected, ρ.
+    pub fn albedo(&self) -> f32 {
+        self.albedo
+    }
+
+    /// The surface normal n.
+    pub fn normal(&self) -> Direction {
+        self.normal
+    }
+}
+
+impl Lobe for LambertLobe {
+    #[inline]
+    fn value(&self, outgoing: Vec3) -> f32 {
+        self.albedo * FRAC_1_PI * self.normal.dot(outgoing).max(0.0)
+    }
+}

@@ -1,0 +1,67 @@
+use super::Ggx;
+
+/// Smith's masking-shadowing function G2: the share of facets that are both lit and seen.
+///
+/// A type parameter, so that the form an engine shades with is the form its lights are culled by.
+/// Every form is at most G1(μ_i), which the bounds rely on.
+pub trait MaskingShadowing: Copy {
+    /// G2(μ_i, μ_o)/(4μ_i): what a microfacet BRDF times μ_o has besides F and D.
+    ///
+    /// Finite for cosines in (0, 1], however close to grazing. The `root`s are √(kμ² + α²) of the
+    /// two cosines.
+    fn over_four_incident_cosines(
+        incident_cosine: f32,
+        incident_root: f32,
+        outgoing_cosine: f32,
+        outgoing_root: f32,
+    ) -> f32;
+
+    /// G2 in \[0, 1\], for the cosines ω_i·n and ω_o·n; zero if either is not positive.
+    fn masking_shadowing(ggx: Ggx, incident_cosine: f32, outgoing_cosine: f32) -> f32 {
+        if !(incident_cosine > 0.0 && outgoing_cosine > 0.0) {
+            return 0.0;
+        }
+        4.0 * incident_cosine
+            * Self::over_four_incident_cosines(
+                incident_cosine,
+                ggx.masking_root(incident_cosine),
+                outgoing_cosine,
+                ggx.masking_root(outgoing_cosine),
+            )
+    }
+}
+
+/// Facets of one height are masked and shadowed together
+/// G2 = 2μ_iμ_o/(μ_o√(kμ_i²+α²) + μ_i√(kμ_o²+α²)) [Heitz 2014, Eq. 99].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HeightCorrelated;
+
+impl MaskingShadowing for HeightCorrelated {
+    #[inline]
+    fn over_four_incident_cosines(
+        incident_cosine: f32,
+        incident_root: f32,
+        outgoing_cosine: f32,
+        outgoing_root: f32,
+    ) -> f32 {
+        let sum = outgoing_cosine * incident_root + incident_cosine * outgoing_root;
+        // Both terms can underflow at once, with the numerator far behind.
+        0.5 * outgoing_cosine / sum.max(f32::MIN_POSITIVE)
+    }
+}
+
+/// Masking and shadowing as if independent, G2 = G1(μ_i) G1(μ_o) [Walter et al. 2007, Eq. 23].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Separable;
+
+impl MaskingShadowing for Separable {
+    #[inline]
+    fn over_four_incident_cosines(
+        incident_cosine: f32,
+        incident_root: f32,
+        outgoing_cosine: f32,
+        outgoing_root: f32,
+    ) -> f32 {
+        outgoing_cosine / ((incident_cosine + incident_root) * (outgoing_cosine + outgoing_root))
+    }
+}

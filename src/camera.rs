@@ -1,0 +1,211 @@
+use core::ops::{Bound, Range};
+
+use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
+
+use crate::{Direction, Error, PixelRectangle, TileRectangle, error, math};
+
+/// The eye: where it is, which way it looks, and how its pixels spread over the view.
+///
+/// Its *camera space* has x to the right, y up and z = depth, the positive distance along the
+/// viewing direction, whichever handedness the engine's view space has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    rotation: Mat3,
+    translation: Vec3,
+    /// How far the rotation is from orthonormal.
+    rotation_deviation: f32,
+    /// Slope (x/z, y/z) of a point = NDC · scale + offset.
+    slope_scale: Vec2,
+    slope_offset: Vec2,
+    /// depth = numerator/(NDC z + offset)
+    depth_numerator: f32,
+    depth_offset: f32,
+}
+
+impl Camera {
+    /// The camera with the engine's own two matrices: `view` from world to view space, and
+    /// `projection` from view space to clip space.
+    ///
+    /// The view must not scale. The projection may be symmetric or off-centre, of either handedness
+    /// (its last row says whether the eye looks along −z or +z), with depth that rises or falls
+    /// (*reversed z*), to a finite or infinite far plane, over \[0, 1\] or \[−1, 1\].
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Matrix`] if `view` is not rigid to 10⁻⁴, or `projection` is not a perspective with
+    /// distinct near and far planes whose corners lie within 89.7° of the viewing direction.
+    pub fn new(view: Mat4, projection: Mat4) -> Result<Self, Error> {
+        let (toward, slope_scale, slope_offset) = slopes(projection)?;
+        let (depth_numerator, depth_offset) = depths(projection, toward)?;
+
+        let last_row = view.row(3);
+        let drift = (last_row - Vec4::W).abs().max_element();
+        if !view.is_finite() || drift > 1e-6 {
+            return Err(Error::Matrix {
+                quantity: "view matrix",
+                element: drift,
+                valid: "its last row must be (0, 0, 0, 1); deviation",
+            });
+        }
+        let rotation_deviation = error::orthonormal("view matrix", Mat3::from_mat4(view), 1e-4)?;
+        let to_depth = Vec3::new(1.0, 1.0, toward);
+        Ok(Self {
+            rotation: Mat3::from_diagonal(to_depth) * Mat3::from_mat4(view),
+            translation: to_depth * view.w_axis.truncate(),
+            rotation_deviation,
+            slope_scale,
+            slope_offset,
+            depth_numerator,
+            depth_offset,
+        })
+    }
+
+    /// A camera at `eye` that looks at `target`, with a symmetric view and depth-buffer values from 0
+    /// at the start of `depths` to 1 at its end, which may be infinite.
+    ///
+    /// `up` is any direction that appears upright; it need not be perpendicular to the view.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Vector`] if `eye` is not finite, equals `target`, or `up` is parallel to the view.
+    /// [`Error::Number`] if `vertical_fov_radians` is outside (0, 3.1\], `aspect_ratio` (width over
+    /// height) outside \[0.01, 100\], the near end of `depths` not positive and finite, or the far
+    /// end not greater than it.
+    pub fn look_at(
+        eye: Vec3,
+        target: Vec3,
+        up: Vec3,
+        vertical_fov_radians: f32,
+        aspect_ratio: f32,
+        depths: Range<f32>,
+    ) -> Result<Self, Error> {
+        let eye = error::finite("eye", eye)?;
+        let forward = Direction::new(target - eye)?;
+        let right = Direction::new(forward.cross(up))?;
+        let rotation = Mat3::from_cols(*right, right.cross(*forward), *forward).transpose();
+
+        let positive = f32::MIN_POSITIVE;
+        let valid = "in (0, 3.1] radians";
+        let fov = error::number_in(
+            "vertical field of view",
+            vertical_fov_radians,
+            valid,
+            positive..=3.1,
+        )?;
+        let valid = "in [0.01, 100]";
+        let aspect = error::number_in("aspect ratio", aspect_ratio, valid, 0.01..=100.0)?;
+        let valid = "positive and finite";
+        let near = error::number_in("near plane", depths.start, valid, positive..=f32::MAX)?;
+        let valid = "greater than the near plane";
+        let beyond_near = (Bound::Excluded(near), Bound::Unbounded);
+        let far = error::number_in("far plane", depths.end, valid, beyond_near)?;
+        // 1/far − 1/near and so on, in the form that an infinite far plane leaves finite.
+        let shrink = 1.0 - near / far;
+        let slope = math::tan(0.5 * fov);
+        Ok(Self {
+            rotation,
+            translation: -(rotation * eye),
+            rotation_deviation: error::orthonormal("view matrix", rotation, 1e-4)?,
+            slope_scale: Vec2::new(slope * aspect, slope),
+            slope_offset: Vec2::ZERO,
+            depth_numerator: -near / shrink,
+            depth_offset: -1.0 / shrink,
+        })
+    }
+
+    /// The axes of world space in camera space, as columns.
+    pub fn rotation(&self) -> Mat3 {
+        self.rotation
+    }
+
+    /// `point` of world space in camera space.
+    pub fn to_camera_space(&self, point: Vec3) -> Vec3 {
+        self.rotation * point + self.translation
+    }
+
+    /// An upper bound of the terms that [`to_camera_space`](Self::to_camera_space) sums.
+    pub(crate) fn magnitude_of_terms(&self, point: Vec3) -> f32 {
+        point.length() + self.translation.length()
+    }
+
+    /// How far the rotation is from orthonormal, element by element.
+    pub(crate) fn rotation_deviation(&self) -> f32 {
+        self.rotation_deviation
+    }
+
+    /// 1/cos of the angle between the viewing direction and the farthest corner of the view.
+    pub(crate) fn corner_secant(&self) -> f32 {
+        (self.slope_scale.abs() + self.slope_offset.abs())
+            .extend(1.0)
+            .length()
+    }
+
+    /// The depth of a point from its `ndc_depth`, the value in a depth buffer.
+    ///
+    /// Infinite for the far plane of an infinite projection, NaN for NaN; both are sky to
+    /// [`DepthInterval`](crate::DepthInterval).
+    pub fn depth(&self, ndc_depth: f32) -> f32 {
+        self.depth_numerator / (ndc_depth + self.depth_offset)
+    }
+
+    /// The tile that `pixels` of an image of `image_size` see. Pixel (0, 0) is at the top left.
+    ///
+    /// `image_size` must not be zero.
+    pub fn tile_rectangle(&self, image_size: [u32; 2], pixels: PixelRectangle) -> TileRectangle {
+        let [width, height] = image_size.map(|n| n as f32);
+        let slope = |[x, y]: [u32; 2]| {
+            let ndc = Vec2::new(2.0 * x as f32 / width - 1.0, 1.0 - 2.0 * y as f32 / height);
+            ndc * self.slope_scale + self.slope_offset
+        };
+        TileRectangle::from_corners(slope(pixels.min), slope(pixels.max))
+    }
+
+    /// The point of camera space at `depth` that the middle of `pixel` sees.
+    pub fn point_in_pixel(&self, image_size: [u32; 2], pixel: [u32; 2], depth: f32) -> Vec3 {
+        let [width, height] = image_size.map(|n| n as f32);
+        let [x, y] = pixel.map(|n| n as f32 + 0.5);
+        let ndc = Vec2::new(2.0 * x / width - 1.0, 1.0 - 2.0 * y / height);
+        (ndc * self.slope_scale + self.slope_offset).extend(1.0) * depth
+    }
+}
+
+/// Which way the eye looks along view-space z (−1 or 1), and the scale and offset from NDC to slopes.
+fn slopes(projection: Mat4) -> Result<(f32, Vec2, Vec2), Error> {
+    let refused = |element, valid| Error::Matrix {
+        quantity: "projection matrix",
+        element,
+        valid,
+    };
+    let [x, y, z, w] = [0, 1, 2, 3].map(|row| projection.row(row));
+    let stray = [x.y, x.w, y.x, y.w, z.x, z.y, w.x, w.y, w.w];
+    if let Some(element) = stray.into_iter().find(|e| *e != 0.0) {
+        let valid = "it must be a perspective along the z axis, with zeros off its pattern";
+        return Err(refused(element, valid));
+    }
+    let toward = w.z.signum();
+    let weight = w.z.abs();
+    let scale = Vec2::new(weight / x.x, weight / y.y);
+    let offset = Vec2::new(-toward * x.z / x.x, -toward * y.z / y.y);
+    let farthest = (scale.abs() + offset.abs()).extend(1.0).length();
+    if !(weight > 0.0 && farthest <= 200.0) {
+        let valid = "the corners of the view must be within 89.7° of its direction; their 1/cos";
+        return Err(refused(farthest, valid));
+    }
+    Ok((toward, scale, offset))
+}
+
+/// The numerator and the offset of depth = numerator/(NDC z + offset).
+fn depths(projection: Mat4, toward: f32) -> Result<(f32, f32), Error> {
+    let weight = projection.row(3).z.abs();
+    let numerator = projection.row(2).w / weight;
+    let offset = -toward * projection.row(2).z / weight;
+    if numerator.is_finite() && numerator != 0.0 && offset.is_finite() {
+        Ok((numerator, offset))
+    } else {
+        Err(Error::Matrix {
+            quantity: "projection matrix",
+            element: numerator,
+            valid: "its near and far planes must be positive and distinct; element (2, 3)",
+        })
+    }
+}

@@ -1,0 +1,86 @@
+use core::ops::{Deref, Neg};
+
+use glam::Vec3;
+
+use crate::{Error, math};
+
+/// A unit vector.
+///
+/// Unit length to a few units in the last place, so nothing after the constructor checks again. It
+/// dereferences to the [`Vec3`] that it holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Direction(Vec3);
+
+impl Direction {
+    /// The direction along +x.
+    pub const X: Self = Self(Vec3::X);
+    /// The direction along +y.
+    pub const Y: Self = Self(Vec3::Y);
+    /// The direction along +z.
+    pub const Z: Self = Self(Vec3::Z);
+
+    /// The direction of `vector`, which may have any finite, non-zero length, subnormal to huge.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Vector`] if `vector` is zero or has a NaN or infinite component.
+    ///
+    /// ```
+    /// use stochastic_light_culling::{Direction, glam::Vec3};
+    ///
+    /// assert_eq!(*Direction::new(Vec3::new(0.0, 0.0, 1e-40))?, Vec3::Z);
+    /// assert!(Direction::new(Vec3::ZERO).is_err());
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
+    pub fn new(vector: Vec3) -> Result<Self, Error> {
+        let largest = vector.abs().max_element();
+        if !vector.is_finite() || largest == 0.0 {
+            return Err(Error::Vector {
+                quantity: "direction",
+                value: vector,
+                valid: "finite and not zero",
+            });
+        }
+        // Twice, since the reciprocal of a subnormal length overflows.
+        let lifted = if largest < f32::MIN_POSITIVE {
+            vector * (1.0 / f32::MIN_POSITIVE)
+        } else {
+            vector
+        };
+        let scaled = lifted / lifted.abs().max_element();
+        Ok(Self(scaled / math::sqrt(scaled.length_squared())))
+    }
+
+    /// `vector`, which has unit length already.
+    pub(crate) fn from_unit(vector: Vec3) -> Self {
+        debug_assert!((math::dot(vector, vector) - 1.0).abs() < 1e-6);
+        Self(vector)
+    }
+
+    /// The components, widened.
+    pub(crate) fn as_f64(self) -> [f64; 3] {
+        self.0.to_array().map(f64::from)
+    }
+}
+
+impl Deref for Direction {
+    type Target = Vec3;
+
+    fn deref(&self) -> &Vec3 {
+        &self.0
+    }
+}
+
+impl Neg for Direction {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl From<Direction> for Vec3 {
+    fn from(direction: Direction) -> Self {
+        direction.0
+    }
+}

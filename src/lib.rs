@@ -1,0 +1,143 @@
+//! Stochastic light culling: tens of thousands of glossy and diffuse lights, culled per tile without
+//! losing energy on average.
+//!
+//! A light's range in each frame is drawn by Russian roulette, so that what is culled is made up for
+//! by what is kept [Tokuyoshi & Harada 2016]. Around a glossy light the range is a lobe, which an
+//! ellipsoid encloses [Tokuyoshi & Harada 2017]. The crate is the mathematics of that method, from a
+//! lit surface point to "does this light touch this tile", as pure functions over [`glam`].
+//!
+//! # The corridor
+//!
+//! | step | from | to | items |
+//! |---|---|---|---|
+//! | lobe | surface, incoming direction | what it reflects | [`GgxLobe`], [`LambertLobe`], [`ConstantLobe`] |
+//! | light | lobe, position, flux | radiant intensity | [`Vpl`] |
+//! | range | intensity, ξ | probability, range, estimate | [`Roulette`], [`Xi`] |
+//! | bound | lobe, range | shape around all it may light | [`Spheroid`], [`Sphere`], [`Ellipsoid`] |
+//! | stretch | bound, camera | unit sphere | [`Stretch`], [`CameraSphere`] |
+//! | tile | pixels, depths | touched or not | [`TileGrid`], [`DepthInterval`], [`TileTest`] |
+//!
+//! Each step can be used alone, and knows nothing of the steps after it.
+//!
+//! ```
+//! use stochastic_light_culling::{
+//!     Camera, DepthInterval, Direction, Ggx, GgxLobe, PixelRectangle, Roulette, Schlick, Stretch,
+//!     TileGrid, TileTest, Vpl, Xi, glam::Vec3,
+//! };
+//!
+//! // A point on a gold floor that a photon of 2 W reached from the upper left.
+//! let normal = Direction::Y;
+//! let incoming = Direction::new(Vec3::new(-1.0, 1.0, 0.0))?;
+//! let lobe = GgxLobe::new(Ggx::new(0.1)?, Schlick::new(0.9)?, normal, incoming);
+//! let light = Vpl::new(Vec3::ZERO, 2.0, lobe)?;
+//!
+//! // How far it reaches in this frame, and a spheroid around that.
+//! let roulette = Roulette::new(0.01)?;
+//! let xi = Xi::hashed(0, 0, 0); // light, frame, seed
+//! let bound = light.bound(&roulette, xi);
+//!
+//! // Before the camera it becomes a unit sphere,
+//! let camera = Camera::look_at(Vec3::new(0.0, 2.0, 9.0), Vec3::Y, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
+//! let stretch = Stretch::new(&bound.into(), &camera).expect("light with flux reaches somewhere");
+//!
+//! // which is tested against the tiles and what they see between two depths.
+//! let grid = TileGrid::new([128, 128], 16)?;
+//! let depths = DepthInterval::new(7.0, 11.0)?;
+//! let touched = grid
+//!     .tiles()
+//!     .filter(|tile| {
+//!         let rectangle = camera.tile_rectangle([128, 128], grid.pixels(*tile));
+//!         stretch.touches(&rectangle, &depths)
+//!     })
+//!     .count();
+//! assert!(0 < touched && touched < 64);
+//!
+//! // At a point in one of those tiles the light is accepted or not; the mean over ξ is exact.
+//! let to_point = Vec3::new(1.5, 1.4, 0.0);
+//! let distance_squared = to_point.length_squared();
+//! let intensity = light.radiant_intensity(to_point.normalize());
+//! let radiance = roulette.estimate(intensity, distance_squared, xi);
+//! assert!(radiance == 0.0 || radiance >= roulette.delta());
+//! # Ok::<(), stochastic_light_culling::Error>(())
+//! ```
+//!
+//! # Conventions
+//!
+//! - `f32` and [`glam`] types; column vectors. Directions point away from the surface.
+//! - Camera space has x to the right, y up and z = depth, positive ahead, for views of either
+//!   handedness ([`Camera`]). Pixel (0, 0) is at the top left.
+//! - Radians, sr, W, W/sr; a light's radiance at distance l is I/l².
+//! - α is the GGX roughness; artists' *perceptual* roughness is usually √α.
+//! - n is the surface normal, ω_i and ω_o point to where light came from and goes to, μ = ω_i·n,
+//!   μ_o = ω_o·n, ω_h is the half vector, and k = 1 − α².
+//!
+//! # Errors, NaN and the hot loop
+//!
+//! Constructors check, and say what is wrong and with which value ([`Error`]). What they return is
+//! valid: nothing after them panics, allocates or makes NaN from finite arguments. A light that
+//! reflects nothing, because its flux is zero or it is lit from behind, is no error but has an empty
+//! range; it drops out before any tile is looked at ([`Stretch::new`] gives `None`).
+//!
+//! Bounds and tests are *conservative*: where their `f32` arithmetic rounds, it rounds towards keeping
+//! the light.
+//!
+//! # Scope
+//!
+//! Here: lobes and their bounds, roulette, the stretch, tile tests, interleaved sampling. Not here:
+//! finding lit points, visibility, shading, denoising, GPU code, and anything that stores a scene;
+//! `examples/render.rs` shows one way to supply these.
+//!
+//! # Features
+//!
+//! - `std` (default): floating-point functions from the standard library.
+//! - `libm`: the same from the [libm](https://docs.rs/libm) crate. The crate is `no_std` without
+//!   `std`. One of the two is needed; with both, `std` is used.
+//!
+//! # Sources
+//!
+//! - Dachsbacher & Stamminger 2006, *Splatting indirect illumination*.
+//! - Heitz 2014, *Understanding the masking-shadowing function in microfacet-based BRDFs*.
+//! - Jarzynski & Olano 2020, *Hash functions for GPU rendering*.
+//! - Keller 1997, *Instant radiosity*.
+//! - Schlick 1994, *An inexpensive BRDF model for physically-based rendering*.
+//! - Segovia et al. 2006, *Non-interleaved deferred shading of interleaved sample patterns*.
+//! - Stewart 2015, *Compute-based tiled culling*.
+//! - Tokuyoshi & Harada 2016, *Stochastic light culling*; 2017, *Stochastic light culling for VPLs on
+//!   GGX microsurfaces*.
+//! - Trowbridge & Reitz 1975, *Average irregularity representation of a rough surface for ray
+//!   reflection*; Walter et al. 2007, *Microfacet models for refraction through rough surfaces*.
+
+#![no_std]
+#![forbid(unsafe_code)]
+#![warn(clippy::disallowed_methods)]
+
+#[cfg(feature = "std")]
+extern crate std;
+
+mod bound;
+mod brdf;
+mod camera;
+mod direction;
+mod error;
+mod interleave;
+mod math;
+mod range;
+mod stretch;
+mod tile;
+mod vpl;
+
+pub use bound::{Bound, Bounded, Ellipsoid, Sphere, Spheroid};
+pub use brdf::{
+    Conductor, ConstantLobe, Dielectric, Fresnel, Ggx, GgxLobe, HeightCorrelated, LambertLobe,
+    Lobe, MaskingShadowing, NoFresnel, Schlick, Separable,
+};
+pub use camera::Camera;
+pub use direction::Direction;
+pub use error::Error;
+pub use interleave::Interleave;
+pub use range::{Roulette, Xi};
+pub use stretch::{CameraSphere, Stretch, stretch_matrix, stretch_rotation};
+pub use tile::{DepthInterval, PixelRectangle, TileGrid, TileRectangle, TileTest};
+pub use vpl::Vpl;
+
+pub use glam;

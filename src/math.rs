@@ -1,0 +1,61 @@
+//! The only module that names a float backend, and the one home of outward rounding.
+
+use glam::Vec3;
+
+#[cfg(not(any(feature = "std", feature = "libm")))]
+compile_error!(
+    "stochastic-light-culling needs a float backend: enable the feature `std` (default) or `libm`"
+);
+
+/// √x, correctly rounded on either backend.
+#[inline]
+pub(crate) fn sqrt(x: f32) -> f32 {
+    #[cfg(feature = "std")]
+    #[expect(clippy::disallowed_methods, reason = "this is the backend")]
+    let root = x.sqrt();
+    #[cfg(all(feature = "libm", not(feature = "std")))]
+    let root = libm::sqrtf(x);
+    root
+}
+
+/// tan x, to the accuracy of the backend.
+pub(crate) fn tan(x: f32) -> f32 {
+    #[cfg(feature = "std")]
+    #[expect(clippy::disallowed_methods, reason = "this is the backend")]
+    let tangent = x.tan();
+    #[cfg(all(feature = "libm", not(feature = "std")))]
+    let tangent = libm::tanf(x);
+    tangent
+}
+
+/// One correctly rounded `f32` operation errs by at most this share of its result: 2⁻²⁴.
+pub(crate) const UNIT_ROUNDOFF: f32 = f32::EPSILON / 2.0;
+
+/// `x ≥ 0`, enlarged by more than `roundings` correctly rounded operations can have taken from it.
+///
+/// n operations take at most a share n·2⁻²⁴; the two more pay for this product and sum.
+#[inline]
+pub(crate) fn round_up(x: f32, roundings: u16) -> f32 {
+    x * (1.0 + (f32::from(roundings) + 2.0) * UNIT_ROUNDOFF)
+}
+
+/// The counterpart of [`round_up`]: `x ≥ 0`, reduced.
+#[inline]
+pub(crate) fn round_down(x: f32, roundings: u16) -> f32 {
+    x * (1.0 - (f32::from(roundings) + 2.0) * UNIT_ROUNDOFF)
+}
+
+/// x⁵.
+#[inline]
+pub(crate) fn fifth_power(x: f32) -> f32 {
+    let squared = x * x;
+    squared * squared * x
+}
+
+/// a·b with the rounding of `f64`: the products of `f32` numbers are exact in it.
+#[inline]
+pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
+    f64::from(a.x) * f64::from(b.x)
+        + f64::from(a.y) * f64::from(b.y)
+        + f64::from(a.z) * f64::from(b.z)
+}

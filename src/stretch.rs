@@ -1,0 +1,214 @@
+//! From an ellipsoid in the world to the unit sphere before the eye.
+//!
+//! An ellipsoid meets a tile exactly when its image, a unit sphere, meets the image of the tile.
+//! With the axes R′ = V R and the centre c′ = V c + o in camera space,
+//!
+//! S = R′ diag(1/r_u, 1/r_v, 1/r_w) R′ᵀ
+//!
+//! takes it to a unit sphere, and the rotation B after it turns planes of constant depth back to
+//! planes of constant depth: M = BS has the third row (0, 0, m)
+//! [Tokuyoshi & Harada 2017, Eqs. 16–17].
+//!
+//! # M without S and B
+//!
+//! B is orthonormal, so MᵀM = S² = A, and B puts a zero at M₂₁ or at M₁₂: M is triangular, the
+//! Cholesky factor of A. Reckoned as B times S, its rows are differences of entries as large as
+//! 1/r_w that must leave 1/r_u, and errors grow with the square of the aspect ratio. But let C = A⁻¹
+//! = R′ diag(r_u², r_v², r_w²) R′ᵀ. From M C Mᵀ = 1 follow
+//!
+//! - m = 1/√C_zz: the ellipsoid reaches √C_zz in depth;
+//! - A_xx A_yy − A_xy² = C_zz det A, the cofactor rule;
+//! - (M₁₃, M₂₃) = −M₂ₓ₂ (C_xz, C_yz)/C_zz.
+//!
+//! Sums of squares all but A_xy, C_xz and C_yz, whose rounding Cauchy–Schwarz bounds by that of the
+//! diagonal: no error is worse than the aspect ratio times a few roundings, which is what one ulp of
+//! the axes costs in any case.
+//!
+//! # What rounding costs
+//!
+//! With u = 2⁻²⁴ and p a point of the ellipsoid, the image of p is off, to first order in u, by at
+//! most
+//!
+//! - (r_max/r_min)(56u + 3δ) for the axes (three products and two sums in each component of V R,
+//!   δ the deviation of V and R from orthonormal) and for the roots, products and quotients of M;
+//! - 12u (‖c‖ + ‖o‖)/r_min for V c + o and M c′, whose terms are at most this large;
+//! - 12u s (‖c‖ + ‖o‖ + r_max)/r_min for the tile's box: its terms are at most s·z/r_min, s the secant
+//!   of the corner of the view and z the depth of p.
+//!
+//! The semi-axes are enlarged by the sum, so a tile with a point of the ellipsoid in it is never
+//! found apart from it.
+
+use glam::{Mat3, Vec3};
+
+use crate::{Camera, Ellipsoid, Sphere, math};
+
+/// S, the symmetric matrix that stretches camera space so that `ellipsoid` becomes a unit sphere
+/// [Tokuyoshi & Harada 2017, Eq. 16].
+///
+/// For a look at the method and for single uses; [`Stretch`] does not need it. Not finite for an
+/// empty ellipsoid.
+pub fn stretch_matrix(ellipsoid: &Ellipsoid, camera: &Camera) -> Mat3 {
+    let axes = camera.rotation() * ellipsoid.rotation();
+    axes * Mat3::from_diagonal(ellipsoid.semi_axes().recip()) * axes.transpose()
+}
+
+/// B, the rotation that takes the images under `stretch` = S of planes of constant depth to planes of
+/// constant z [Tokuyoshi & Harada 2017, Eq. 17].
+pub fn stretch_rotation(stretch: Mat3) -> Mat3 {
+    let (x, y) = (stretch.x_axis, stretch.y_axis);
+    let z = x.cross(y).normalize();
+    if x.length_squared() > y.length_squared() {
+        let x = x.normalize();
+        Mat3::from_cols(x, z.cross(x), z).transpose()
+    } else {
+        let y = y.normalize();
+        Mat3::from_cols(y.cross(z), y, z).transpose()
+    }
+}
+
+/// An ellipsoid as a tile test wants it: M = BS, which takes it to a unit sphere, and the sphere's
+/// centre Mc′.
+///
+/// ```
+/// use stochastic_light_culling::{Camera, Ellipsoid, Stretch, glam::{Mat3, Vec3}};
+///
+/// let camera = Camera::look_at(Vec3::ZERO, -Vec3::Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
+/// let ellipsoid = Ellipsoid::new(Vec3::new(0.0, 0.0, -8.0), Mat3::IDENTITY, Vec3::new(1.0, 2.0, 4.0))?;
+/// let stretch = Stretch::new(&ellipsoid, &camera).expect("not empty");
+/// assert!((stretch.center() - Vec3::new(0.0, 0.0, 2.0)).length() < 1e-4);
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    matrix: Mat3,
+    center: Vec3,
+}
+
+impl Stretch {
+    /// The stretch of `ellipsoid` before `camera`; `None` if it is empty.
+    ///
+    /// Of an ellipsoid too large to be finite, the stretch takes all of space into the unit sphere.
+    pub fn new(ellipsoid: &Ellipsoid, camera: &Camera) -> Option<Self> {
+        if ellipsoid.is_empty() {
+            return None;
+        }
+        let semi_axes = ellipsoid.semi_axes();
+        let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
+        if !(longest.is_finite() && ellipsoid.center().is_finite()) {
+            return Some(Self {
+                matrix: Mat3::ZERO,
+                center: Vec3::ZERO,
+            });
+        }
+        let unscaled = triangular_stretch(camera.rotation() * ellipsoid.rotation(), semi_axes);
+        let margin = rounding_margin(ellipsoid, camera, shortest, longest);
+        let matrix = unscaled * (1.0 / (shortest * (1.0 + margin)));
+        Some(Self {
+            matrix,
+            center: matrix * camera.to_camera_space(ellipsoid.center()),
+        })
+    }
+
+    /// M: the columns are the images of the axes of camera space. Its third row is (0, 0, m), and one
+    /// of its other two elements off the diagonal of the first two columns is zero.
+    pub fn matrix(&self) -> Mat3 {
+        self.matrix
+    }
+
+    /// Mc′, the centre of the unit sphere.
+    pub fn center(&self) -> Vec3 {
+        self.center
+    }
+}
+
+/// M·r_min, for axes that are the columns of `axes`.
+fn triangular_stretch(axes: Mat3, semi_axes: Vec3) -> Mat3 {
+    let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
+    let inverse = Vec3::splat(shortest) / semi_axes;
+    let direct = semi_axes / longest;
+    // A r_min² and C/r_max², of which only these elements are needed.
+    let [x, y, z] = [0, 1, 2].map(|i| axes.row(i));
+    let (inverse_squared, direct_squared) = (inverse * inverse, direct * direct);
+    let a_xx = (inverse_squared * x).dot(x);
+    let a_yy = (inverse_squared * y).dot(y);
+    let a_xy = (inverse_squared * x).dot(y);
+    let c_xz = (direct_squared * x).dot(z);
+    let c_yz = (direct_squared * y).dot(z);
+    let c_zz = (direct_squared * z).dot(z);
+
+    let depth_reach = math::sqrt(c_zz);
+    // √(A_xx A_yy − A_xy²): of √det A, the factor 1/(r_min r_max) is in the units chosen.
+    let root = depth_reach * (shortest / median(semi_axes));
+    let [(xx, xy), (yx, yy)] = if a_xx > a_yy {
+        let xx = math::sqrt(a_xx);
+        [(xx, a_xy / xx), (0.0, root / xx)]
+    } else {
+        let yy = math::sqrt(a_yy);
+        [(root / yy, 0.0), (a_xy / yy, yy)]
+    };
+    let shear = Vec3::new(xx * c_xz + xy * c_yz, yx * c_xz + yy * c_yz, 0.0) / c_zz;
+    let m = shortest / (longest * depth_reach);
+    Mat3::from_cols(
+        Vec3::new(xx, yx, 0.0),
+        Vec3::new(xy, yy, 0.0),
+        Vec3::new(-shear.x, -shear.y, m),
+    )
+}
+
+fn median(v: Vec3) -> f32 {
+    v.x.max(v.y).min(v.x.min(v.y).max(v.z))
+}
+
+/// The sum of the module's section on rounding.
+fn rounding_margin(ellipsoid: &Ellipsoid, camera: &Camera, shortest: f32, longest: f32) -> f32 {
+    let u = math::UNIT_ROUNDOFF;
+    let aspect_ratio = longest / shortest;
+    let distance = camera.magnitude_of_terms(ellipsoid.center()) / shortest;
+    let secant = camera.corner_secant();
+    aspect_ratio * (56.0 * u + 3.0 * camera.rotation_deviation())
+        + 12.0 * u * (distance + secant * (distance + aspect_ratio))
+}
+
+/// A sphere as a tile test wants it: in camera space, with nothing stretched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraSphere {
+    center: Vec3,
+    radius_squared: f32,
+}
+
+impl CameraSphere {
+    /// `sphere` before `camera`; `None` if it is empty.
+    pub fn new(sphere: &Sphere, camera: &Camera) -> Option<Self> {
+        let radius = sphere.radius();
+        if radius == 0.0 {
+            return None;
+        }
+        let center = camera.to_camera_space(sphere.center());
+        if !(radius.is_finite() && center.is_finite()) {
+            return Some(Self {
+                center: Vec3::ZERO,
+                radius_squared: f32::INFINITY,
+            });
+        }
+        // The terms of the centre and of the tile's box, as for an ellipsoid, and a view that scales.
+        let terms = camera.magnitude_of_terms(sphere.center());
+        let rounding =
+            12.0 * math::UNIT_ROUNDOFF * (terms + camera.corner_secant() * (terms + radius));
+        let scaling = 3.0 * camera.rotation_deviation() * radius;
+        let enlarged = math::round_up(radius + rounding + scaling, 8);
+        Some(Self {
+            center,
+            radius_squared: enlarged * enlarged,
+        })
+    }
+
+    /// The centre in camera space.
+    pub fn center(&self) -> Vec3 {
+        self.center
+    }
+
+    /// The square of the radius, enlarged by what rounding can take.
+    pub fn radius_squared(&self) -> f32 {
+        self.radius_squared
+    }
+}

@@ -1,0 +1,57 @@
+use glam::Vec3;
+
+use super::{DepthInterval, TileRectangle};
+use crate::{CameraSphere, Stretch};
+
+/// Whether a light may touch a tile.
+pub trait TileTest {
+    /// Whether the light may reach a point whose slopes lie in `rectangle` and whose depth lies in
+    /// `depths`.
+    ///
+    /// Never false where it does reach one, and true for some tiles that it does not.
+    fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool;
+}
+
+impl TileTest for Stretch {
+    /// The paper's test [Tokuyoshi & Harada 2017, Sec. 5.2]: M takes the rectangle, at depth 1, to a
+    /// parallelogram; the box of that, drawn out over the depths, is an axis-aligned box, which is
+    /// apart from the unit sphere if its nearest point is.
+    #[inline]
+    fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
+        let middle = 0.5 * (rectangle.min() + rectangle.max());
+        let half = 0.5 * (rectangle.max() - rectangle.min());
+        let m = self.matrix();
+        let middle = m.x_axis * middle.x + m.y_axis * middle.y + m.z_axis;
+        let half = m.x_axis.abs() * half.x + m.y_axis.abs() * half.y;
+        box_reaches(middle - half, middle + half, depths, self.center(), 1.0)
+    }
+}
+
+impl TileTest for CameraSphere {
+    /// The same test with nothing stretched: against the tile's box in camera space.
+    #[inline]
+    fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
+        let (low, high) = (rectangle.min().extend(1.0), rectangle.max().extend(1.0));
+        box_reaches(low, high, depths, self.center(), self.radius_squared())
+    }
+}
+
+/// Whether the box from `low` to `high` at depth 1, drawn out over `depths`, comes as near to
+/// `center` as the square root of `radius_squared`.
+#[inline]
+fn box_reaches(
+    low: Vec3,
+    high: Vec3,
+    depths: &DepthInterval,
+    center: Vec3,
+    radius_squared: f32,
+) -> bool {
+    let low = (low * depths.near()).min(low * depths.far());
+    let high = (high * depths.near()).max(high * depths.far());
+    let apart = (low - center).max(center - high).max(Vec3::ZERO);
+    // Written so that an overflow to NaN does not lose the light.
+    !matches!(
+        apart.length_squared().partial_cmp(&radius_squared),
+        Some(core::cmp::Ordering::Greater)
+    )
+}
