@@ -59,3 +59,17 @@ pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
         + f64::from(a.y) * f64::from(b.y)
         + f64::from(a.z) * f64::from(b.z)
 }
+
+/// ‖a × b‖, with no cancellation beyond that of `f64`.
+#[inline]
+pub(crate) fn cross_length(a: Vec3, b: Vec3) -> f32 {
+    let minor = |a0: f32, a1: f32, b0: f32, b1: f32| {
+        f64::from(a0) * f64::from(b1) - f64::from(a1) * f64::from(b0)
+    };
+    let (x, y, z) = (
+        minor(a.y, a.z, b.y, b.z),
+        minor(a.z, a.x, b.z, b.x),
+        minor(a.x, a.y, b.x, b.y),
+    );
+    sqrt((x * x + y * y + z * z) as f32)
+}

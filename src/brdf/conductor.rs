@@ -1,4 +1,4 @@
-use super::Fresnel;
+use super::{Fresnel, dielectric::index_squared_less_sine_squared};
 use crate::{Error, error, math};
 
 /// Unpolarised light at a smooth absorbing surface, a metal, with complex index η + iκ.
@@ -43,7 +43,7 @@ impl Fresnel for Conductor {
         let s_squared = (1.0 - c) * (1.0 + c);
         // w² = real + i·imaginary. Of the two roots the larger is taken first, and the other from
         // 2ab = imaginary, so that neither cancels.
-        let real = c * c + ((eta - 1.0) * (eta + 1.0) - kappa * kappa);
+        let real = index_squared_less_sine_squared(eta, c) - kappa * kappa;
         let half_imaginary = eta * kappa;
         let modulus = math::sqrt(real * real + 4.0 * half_imaginary * half_imaginary);
         let larger = math::sqrt(0.5 * (modulus + real.abs()));

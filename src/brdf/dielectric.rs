@@ -38,8 +38,7 @@ impl Fresnel for Dielectric {
     #[inline]
     fn reflectance(&self, half_angle_cosine: f32) -> f32 {
         let (eta, c) = (self.relative_index, half_angle_cosine);
-        // η² − s², with an error relative to c² rather than to 1, which matters at the critical angle.
-        let w_squared = c * c + (eta - 1.0) * (eta + 1.0);
+        let w_squared = index_squared_less_sine_squared(eta, c);
         if w_squared <= 0.0 {
             return 1.0;
         }
@@ -48,5 +47,16 @@ impl Fresnel for Dielectric {
         let amplitude = ((1.0 - eta) / (c + w)) * ((1.0 + eta) / (c + w));
         let polarisation = (c * w - s_squared) / (c * w + s_squared);
         (0.5 * amplitude * amplitude * (1.0 + polarisation * polarisation)).min(1.0)
+    }
+}
+
+/// η² − s² for s² = 1 − c², with an error of a few roundings of the lesser of s² and c², which at the
+/// critical angle decides.
+#[inline]
+pub(super) fn index_squared_less_sine_squared(eta: f32, c: f32) -> f32 {
+    if c * c > 0.5 {
+        eta * eta - (1.0 - c) * (1.0 + c)
+    } else {
+        c * c + (eta - 1.0) * (eta + 1.0)
     }
 }

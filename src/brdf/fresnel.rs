@@ -8,26 +8,16 @@ pub trait Fresnel: Copy {
     /// F in \[0, 1\] for cosθ_h = ω_i·ω_h in \[0, 1\].
     fn reflectance(&self, half_angle_cosine: f32) -> f32;
 
-    /// An upper bound, tight to rounding, of F over all outgoing directions above the surface, for
-    /// light that arrives at `incidence_cosine` = μ = ω_i·n in (0, 1].
+    /// An upper bound, tight to rounding, of F over all half angles from zero to the one whose cosine
+    /// is `smallest_cosine` in \[0, 1\].
     ///
-    /// The half angle θ_h runs from 0 to ½ arccos μ + π/4, and a quasi-convex F is largest at one
-    /// of the two ends [Tokuyoshi & Harada 2017, supplemental Eq. 6].
-    fn maximum(&self, incidence_cosine: f32) -> f32 {
+    /// A quasi-convex F is largest at one of the two ends
+    /// [Tokuyoshi & Harada 2017, supplemental Eq. 6].
+    fn maximum(&self, smallest_cosine: f32) -> f32 {
         let head_on = self.reflectance(1.0);
-        let grazing = self.reflectance(smallest_half_angle_cosine(incidence_cosine));
+        let grazing = self.reflectance(math::round_down(smallest_cosine, 8));
         math::round_up(head_on.max(grazing), 32).min(1.0)
     }
-}
-
-/// cosθ_h^max = cos(½ arccos μ + π/4), rounded down.
-///
-/// Written as μ/√(2(1 + √(1−μ²))): the source's √((1 − √(1−μ²))/2) cancels at grazing incidence
-/// [Tokuyoshi & Harada 2017, supplemental, below Eq. 2].
-fn smallest_half_angle_cosine(incidence_cosine: f32) -> f32 {
-    let mu = incidence_cosine;
-    let sine = math::sqrt((1.0 - mu) * (1.0 + mu));
-    math::round_down(mu / math::sqrt(2.0 * (1.0 + sine)), 8)
 }
 
 /// No Fresnel factor, F = 1: all light is reflected. Costs nothing.
@@ -41,7 +31,7 @@ impl Fresnel for NoFresnel {
     }
 
     #[inline]
-    fn maximum(&self, _incidence_cosine: f32) -> f32 {
+    fn maximum(&self, _smallest_cosine: f32) -> f32 {
         1.0
     }
 }

@@ -87,9 +87,15 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         self.incident_cosine
     }
 
-    /// F_max, the largest Fresnel factor that any direction above the surface can have.
+    /// F_max, the largest Fresnel factor that any direction above the surface can have, rounded up.
+    ///
+    /// The half angle reaches ½ arccos μ + π/4, whose cosine is μ/√(2(1 + √(1−μ²))). The source's
+    /// √((1 − √(1−μ²))/2) cancels at grazing incidence, and √(1−μ²) at normal incidence, where the sine
+    /// of a cross product does not [Tokuyoshi & Harada 2017, supplemental, below Eq. 2].
     pub fn max_fresnel(&self) -> f32 {
-        self.fresnel.maximum(self.incident_cosine)
+        let sine = math::cross_length(*self.normal, *self.incoming);
+        let smallest_cosine = self.incident_cosine / math::sqrt(2.0 * (1.0 + sine));
+        self.fresnel.maximum(smallest_cosine)
     }
 
     /// G1(μ)/(4μ) = 1/(2(μ + √(kμ² + α²))), which stays finite at grazing incidence.

@@ -1,0 +1,216 @@
+//! Constructors refuse what they cannot use, and say what it was.
+
+use stochastic_light_culling::{
+    Camera, Conductor, ConstantLobe, DepthInterval, Dielectric, Direction, Ellipsoid, Error, Ggx,
+    Interleave, LambertLobe, Roulette, Schlick, Sphere, TileGrid, TileRectangle, Vpl, Xi,
+    glam::{Mat3, Mat4, Vec2, Vec3, Vec4},
+};
+
+const NOT_NUMBERS: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+
+/// All of `values` and everything that is no number are refused, by a message that names the value.
+fn refuses<T>(values: &[f32], construct: impl Fn(f32) -> Result<T, Error>) {
+    for value in values.iter().copied().chain(NOT_NUMBERS) {
+        let error = construct(value)
+            .err()
+            .unwrap_or_else(|| panic!("{value} is accepted"));
+        let message = error.to_string();
+        assert!(
+            message.contains(&value.to_string()),
+            "{message} does not name {value}"
+        );
+        assert!(!message.contains('\n'));
+    }
+}
+
+#[test]
+fn numbers_out_of_range() {
+    let one = Vec3::ONE;
+    refuses(&[0.0, -0.1, 1.000_001, 1e-7, 1e-40], Ggx::new);
+    refuses(&[-1e-9, 1.000_001, -1e-45], Schlick::new);
+    refuses(&[0.0, -1.5, 1e-10, 1e10], Dielectric::new);
+    refuses(&[0.0, -1.5, 1e10], |eta| Conductor::new(eta, 1.0));
+    refuses(&[-1e-9, 1e10], |kappa| Conductor::new(1.0, kappa));
+    refuses(&[-0.1, 1.1], |albedo| {
+        LambertLobe::new(albedo, Direction::Z)
+    });
+    refuses(&[0.0, -0.001], Roulette::new);
+    refuses(&[0.0, -0.5, 1.000_001], Xi::new);
+    refuses(&[-1.0, -1e-45], |flux| Vpl::new(one, flux, ConstantLobe));
+    refuses(&[-1.0], |radius| Sphere::new(one, radius));
+    refuses(&[-1.0], |near| DepthInterval::new(near, 2.0));
+    refuses(&[0.999, -1.0], |far| DepthInterval::new(1.0, far));
+}
+
+#[test]
+fn edges_of_the_ranges_are_accepted() {
+    for roughness in [1e-6, Ggx::MIN_ROUGHNESS, 1.0] {
+        assert!(Ggx::new(roughness).is_ok());
+    }
+    assert!(Schlick::new(0.0).is_ok() && Schlick::new(1.0).is_ok());
+    assert!(Roulette::new(1e-45).is_ok() && Roulette::new(f32::MAX).is_ok());
+    assert!(Xi::new(1.0).is_ok() && Xi::new(1e-45).is_ok());
+    assert!(Vpl::new(Vec3::ZERO, 0.0, ConstantLobe).is_ok());
+    assert!(DepthInterval::new(3.0, 3.0).is_ok());
+}
+
+#[test]
+fn vectors_without_a_direction_or_a_place() {
+    for value in [Vec3::ZERO, Vec3::NAN, Vec3::new(1.0, f32::INFINITY, 0.0)] {
+        let message = Direction::new(value).unwrap_err().to_string();
+        assert!(message.contains(&value.to_string()), "{message}");
+    }
+    for value in [Vec3::NAN, Vec3::new(1.0, f32::NEG_INFINITY, 0.0)] {
+        for message in [
+            Vpl::new(value, 1.0, ConstantLobe).unwrap_err().to_string(),
+            Sphere::new(value, 1.0).unwrap_err().to_string(),
+            Ellipsoid::new(value, Mat3::IDENTITY, Vec3::ONE)
+                .unwrap_err()
+                .to_string(),
+        ] {
+            assert!(message.contains(&value.to_string()), "{message}");
+        }
+    }
+    for length in [1e-45, 1e-38, 1e-20, 1.0, 1e20, f32::MAX] {
+        let direction = Direction::new(Vec3::new(length, 0.0, length)).unwrap();
+        assert!((direction.length() - 1.0).abs() < 1e-6, "{length}");
+    }
+}
+
+#[test]
+fn shapes_that_are_none() {
+    for semi_axes in [
+        Vec3::ZERO,
+        Vec3::NAN,
+        Vec3::new(1.0, -1.0, 1.0),
+        Vec3::new(1.0, 1.0, f32::INFINITY),
+        Vec3::new(1e-20, 1.0, 1.0),
+    ] {
+        let message = Ellipsoid::new(Vec3::ZERO, Mat3::IDENTITY, semi_axes)
+            .unwrap_err()
+            .to_string();
+        assert!(message.contains(&semi_axes.to_string()), "{message}");
+    }
+    for rotation in [
+        Mat3::ZERO,
+        Mat3::from_diagonal(Vec3::splat(1.001)),
+        Mat3::NAN,
+    ] {
+        assert!(Ellipsoid::new(Vec3::ZERO, rotation, Vec3::ONE).is_err());
+    }
+    let (low, high) = (Vec2::new(0.0, 0.0), Vec2::new(1.0, -0.1));
+    assert!(TileRectangle::new(low, high).is_err());
+    assert!(TileRectangle::new(low, Vec2::NAN).is_err());
+    assert!(TileRectangle::new(Vec2::INFINITY, high).is_err());
+}
+
+#[test]
+fn sizes_of_nothing() {
+    for size in [[0, 5], [5, 0], [0, 0]] {
+        let message = TileGrid::new(size, 16).unwrap_err().to_string();
+        assert!(
+            message.contains(&format!("{}×{}", size[0], size[1])),
+            "{message}"
+        );
+        assert!(Interleave::new(size, 1).is_err());
+    }
+    assert!(
+        TileGrid::new([5, 5], 0)
+            .unwrap_err()
+            .to_string()
+            .contains("tile size is 0×0")
+    );
+    assert!(Interleave::new([5, 5], 0).is_err());
+    assert!(
+        Interleave::new([5, 5], 6)
+            .unwrap_err()
+            .to_string()
+            .contains("6×6")
+    );
+}
+
+fn look_at(fov: f32, aspect: f32, near: f32, far: f32) -> Result<Camera, Error> {
+    Camera::look_at(Vec3::ZERO, Vec3::X, Vec3::Y, fov, aspect, near..far)
+}
+
+#[test]
+fn cameras_that_see_nothing() {
+    let all_but = |value: f32| [f32::NAN, value, f32::NEG_INFINITY];
+    for value in all_but(0.0).into_iter().chain([3.2]) {
+        assert!(
+            look_at(value, 1.0, 0.1, 10.0)
+                .unwrap_err()
+                .to_string()
+                .contains(&value.to_string())
+        );
+    }
+    for value in all_but(0.0) {
+        assert!(
+            look_at(1.0, value, 0.1, 10.0)
+                .unwrap_err()
+                .to_string()
+                .contains(&value.to_string())
+        );
+    }
+    for value in all_but(0.0).into_iter().chain([f32::INFINITY]) {
+        assert!(
+            look_at(1.0, 1.0, value, 10.0)
+                .unwrap_err()
+                .to_string()
+                .contains(&value.to_string())
+        );
+    }
+    for value in all_but(0.5).into_iter().chain([1.0]) {
+        assert!(
+            look_at(1.0, 1.0, 1.0, value)
+                .unwrap_err()
+                .to_string()
+                .contains(&value.to_string())
+        );
+    }
+    assert!(look_at(1.0, 1.0, 1.0, f32::INFINITY).is_ok());
+    for (eye, up) in [
+        (Vec3::X, Vec3::Y),
+        (Vec3::NAN, Vec3::Y),
+        (Vec3::ZERO, Vec3::X),
+        (Vec3::ZERO, Vec3::ZERO),
+    ] {
+        assert!(Camera::look_at(eye, Vec3::X, up, 1.0, 1.0, 0.1..10.0).is_err());
+    }
+}
+
+#[test]
+fn matrices_of_another_kind() {
+    let projection = Mat4::from_cols(
+        Vec4::X,
+        Vec4::Y,
+        Vec4::new(0.0, 0.0, -1.01, -1.0),
+        Vec4::new(0.0, 0.0, -0.101, 0.0),
+    );
+    assert!(Camera::new(Mat4::IDENTITY, projection).is_ok());
+    let scaled = Mat4::from_scale(Vec3::splat(1.01));
+    let mut perspective_view = Mat4::IDENTITY;
+    perspective_view.x_axis.w = 0.1;
+    for view in [scaled, Mat4::ZERO, Mat4::NAN, perspective_view] {
+        assert!(Camera::new(view, projection).is_err(), "{view}");
+    }
+    let mut same_planes = projection;
+    same_planes.w_axis.z = 0.0;
+    let mut infinite_planes = projection;
+    infinite_planes.w_axis.z = f32::INFINITY;
+    let mut wide = projection;
+    wide.x_axis.x = 1e-3;
+    let mut sheared = projection;
+    sheared.y_axis.x = 0.1;
+    for wrong in [
+        Mat4::IDENTITY,
+        Mat4::ZERO,
+        Mat4::NAN,
+        same_planes,
+        infinite_planes,
+        wide,
+        sheared,
+    ] {
+        assert!(Camera::new(Mat4::IDENTITY, wrong).is_err(), "{wrong}");
+    }
+}

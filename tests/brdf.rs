@@ -1,0 +1,224 @@
+//! The microfacet terms are what they are defined to be, and agree with the model.
+
+mod generators;
+mod reference;
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use approx::assert_relative_eq;
+use proptest::prelude::*;
+use reference::{Brdf, Masking, Vector, ggx_ndf, smith_g1, smith_g2};
+use stochastic_light_culling::{
+    Conductor, Dielectric, Fresnel, Ggx, GgxLobe, HeightCorrelated, Lobe, MaskingShadowing,
+    NoFresnel, Schlick, Separable, glam::Vec3,
+};
+
+const ROUGHNESSES: [f32; 7] = [1e-3, 0.01, 0.05, 0.2, 0.5, 0.9, 1.0];
+
+/// ∫ D(ω) g(ω) dω over the upper hemisphere by the midpoint rule, in angles that spread the lobe
+/// evenly: tan θ = α tan t.
+fn integrate_over_normals(roughness: f32, rings: u32, g: impl Fn(Vector) -> f64) -> f64 {
+    let ggx = Ggx::new(roughness).unwrap();
+    let alpha = f64::from(roughness);
+    let sectors = 2 * rings;
+    let mut sum = 0.0;
+    for ring in 0..rings {
+        let t = FRAC_PI_2 * (f64::from(ring) + 0.5) / f64::from(rings);
+        let theta = (alpha * t.tan()).atan();
+        let stretch = alpha / (t.cos().powi(2) + (alpha * t.sin()).powi(2));
+        for sector in 0..sectors {
+            let phi = TAU * (f64::from(sector) + 0.5) / f64::from(sectors);
+            let (sine, cosine) = theta.sin_cos();
+            let normal = Vector([sine * phi.cos(), sine * phi.sin(), cosine]);
+            let density = f64::from(ggx.ndf_at(normal.to_f32(), Vec3::Z));
+            sum += density * g(normal) * sine * stretch;
+        }
+    }
+    sum * FRAC_PI_2 / f64::from(rings) * TAU / f64::from(sectors)
+}
+
+#[test]
+fn ndf_projects_to_unit_area() {
+    for roughness in ROUGHNESSES {
+        let area = integrate_over_normals(roughness, 200, |m| m.0[2]);
+        assert_relative_eq!(area, 1.0, epsilon = 1e-4);
+    }
+}
+
+/// μ = G1(μ) ∫ D(ω) max(ω_i·ω, 0) dω: the visible facets fill the projected area [Heitz 2014].
+#[test]
+fn masking_fulfils_its_defining_integral() {
+    for roughness in ROUGHNESSES {
+        for cosine in [0.01_f64, 0.1, 0.4, 0.8, 1.0] {
+            let incoming = Vector([(1.0 - cosine * cosine).sqrt(), 0.0, cosine]);
+            let facing = integrate_over_normals(roughness, 600, |m| m.dot(incoming).max(0.0));
+            let masking = f64::from(Ggx::new(roughness).unwrap().masking(cosine as f32));
+            assert_relative_eq!(masking * facing, cosine, max_relative = 1e-3);
+        }
+    }
+}
+
+#[test]
+fn ndf_vanishes_below_the_horizon_and_for_nan() {
+    let ggx = Ggx::new(0.3).unwrap();
+    for cosine in [0.0, -0.5, -1.0, f32::NAN] {
+        assert_eq!(ggx.ndf(cosine), 0.0);
+        assert_eq!(ggx.masking(cosine), 0.0);
+    }
+    assert_eq!(ggx.ndf_at(-Vec3::Z, Vec3::Z), 0.0);
+    assert_eq!(ggx.ndf_at(Vec3::NAN, Vec3::Z), 0.0);
+    assert_relative_eq!(
+        ggx.ndf(1.0),
+        1.0 / (std::f32::consts::PI * 0.09),
+        max_relative = 1e-6
+    );
+}
+
+/// A surface lit at a slant, with μ = `cosine` to rounding.
+fn lit_at(cosine: f32) -> generators::Lit {
+    let normal = Vector([0.36, 0.48, 0.8]);
+    let incoming = normal.turned(normal.orthogonal(), f64::from(cosine).acos());
+    generators::Lit::new(normal, incoming)
+}
+
+fn relative_error(value: f32, exact: f64) -> f64 {
+    (f64::from(value) - exact).abs() / exact.abs().max(1e-30)
+}
+
+fn check_fresnel(fresnel: impl Fresnel, model: reference::Fresnel, cosine: f32, mu: f32) {
+    let exact = model.at(f64::from(cosine));
+    let value = f64::from(fresnel.reflectance(cosine));
+    // Relative to 1 − F as well: near total reflection F is steep, and 1 − F is what is small.
+    assert!(
+        (value - exact).abs() <= 2e-5 * exact + 1e-12
+            || (value - exact).abs() <= 2e-3 * (1.0 - exact),
+        "{model:?} at {cosine}: {value}, but exactly {exact}"
+    );
+    assert!((0.0..=1.0).contains(&value));
+
+    let lit = lit_at(mu);
+    let most = model.max_above_surface(lit.surface.incident_cosine());
+    let ggx = Ggx::new(0.5).unwrap();
+    let lobe = GgxLobe::new(ggx, fresnel, lit.normal, lit.incoming);
+    let bound = f64::from(lobe.max_fresnel());
+    assert!(
+        bound >= most,
+        "{model:?} at {mu}: {bound} does not bound {most}"
+    );
+    assert!(
+        bound <= 1.01 * most,
+        "{model:?} at {mu}: {bound} is loose, {most} is attained"
+    );
+}
+
+proptest! {
+    #![proptest_config(generators::cases(1000))]
+
+    #[test]
+    fn fresnel_agrees_and_its_maximum_is_attained(
+        model in generators::fresnel(),
+        cosine in generators::up_to_one(1e-3),
+        mu in generators::up_to_one(1e-3),
+    ) {
+        match model {
+            reference::Fresnel::None => check_fresnel(NoFresnel, model, cosine, mu),
+            reference::Fresnel::Schlick(f0) => {
+                check_fresnel(Schlick::new(f0).unwrap(), model, cosine, mu);
+            }
+            reference::Fresnel::Dielectric(eta) => {
+                check_fresnel(Dielectric::new(eta).unwrap(), model, cosine, mu);
+            }
+            reference::Fresnel::Conductor(eta, kappa) => {
+                check_fresnel(Conductor::new(eta, kappa).unwrap(), model, cosine, mu);
+            }
+        }
+    }
+
+    #[test]
+    fn terms_agree_with_the_model(
+        roughness in generators::roughness(),
+        mu in generators::up_to_one(1e-3),
+        mu_o in generators::up_to_one(1e-6),
+        lit in generators::lit(),
+    ) {
+        let (ggx, alpha) = (Ggx::new(roughness).unwrap(), f64::from(roughness));
+        let (mu64, mu_o64) = (f64::from(mu), f64::from(mu_o));
+        let half = Vector::from(*lit.incoming);
+        prop_assert!(relative_error(
+            ggx.ndf_at(*lit.incoming, *lit.normal),
+            ggx_ndf(alpha, half.unit(), lit.surface.normal),
+        ) < 1e-5 + 1e-6 / alpha);
+        prop_assert!(relative_error(ggx.masking(mu), smith_g1(alpha, mu64)) < 1e-6);
+
+        let g1 = ggx.masking(mu);
+        let correlated = HeightCorrelated::masking_shadowing(ggx, mu, mu_o);
+        let separable = Separable::masking_shadowing(ggx, mu, mu_o);
+        prop_assert!(relative_error(
+            correlated, smith_g2(alpha, Masking::HeightCorrelated, mu64, mu_o64)) < 2e-6);
+        prop_assert!(relative_error(
+            separable, smith_g2(alpha, Masking::Separable, mu64, mu_o64)) < 2e-6);
+        prop_assert!(correlated <= g1 * (1.0 + 1e-6));
+        prop_assert!(separable <= correlated * (1.0 + 1e-6));
+    }
+
+    #[test]
+    fn lobe_agrees_with_the_model(
+        roughness in generators::up_to_one(0.01),
+        f0 in 0.0..=1.0_f32,
+        lit in generators::lit(),
+        outgoing in generators::unit_vector(),
+    ) {
+        let schlick = Schlick::new(f0).unwrap();
+        let lobe = GgxLobe::new(Ggx::new(roughness).unwrap(), schlick, lit.normal, lit.incoming);
+        let outgoing = outgoing.to_f32();
+        let exact_outgoing = Vector::from(outgoing).unit();
+        // Where μ_o is all rounding, so is what depends on it.
+        if exact_outgoing.dot(lit.surface.normal).abs() < 1e-4 {
+            return Ok(());
+        }
+        for (value, masking) in [
+            (lobe.value(outgoing), Masking::HeightCorrelated),
+            (lobe.separable().value(outgoing), Masking::Separable),
+        ] {
+            let fresnel = reference::Fresnel::Schlick(f0);
+            let brdf = Brdf::Ggx { roughness, fresnel, masking };
+            let exact = lit.surface.value(brdf, exact_outgoing);
+            prop_assert!(relative_error(value, exact) < 1e-3 || f64::from(value) == exact,
+                "{value} {exact}");
+        }
+    }
+
+    #[test]
+    fn lobe_is_finite_at_every_edge(
+        roughness in prop_oneof![Just(Ggx::MIN_ROUGHNESS), generators::roughness()],
+        incoming_height in generators::log_uniform(1e-45, 1.0),
+        outgoing_height in generators::log_uniform(1e-45, 1.0),
+        sign in prop_oneof![Just(-1.0_f32), Just(1.0_f32)],
+    ) {
+        let incoming = stochastic_light_culling::Direction::new(
+            Vec3::new(1.0, 0.0, incoming_height as f32)).unwrap();
+        let outgoing = Vec3::new(sign, 0.0, outgoing_height as f32).normalize();
+        let lobe = GgxLobe::new(
+            Ggx::new(roughness).unwrap(), NoFresnel, stochastic_light_culling::Direction::Z, incoming);
+        for value in [lobe.value(outgoing), lobe.separable().value(outgoing)] {
+            prop_assert!(value.is_finite() && value >= 0.0, "{value}");
+        }
+        prop_assert_eq!(lobe.value(Vec3::NAN), 0.0);
+        prop_assert_eq!(lobe.value(-Vec3::Z), 0.0);
+    }
+}
+
+#[test]
+fn normal_incidence_and_full_roughness_are_ordinary() {
+    let lobe = GgxLobe::new(
+        Ggx::new(1.0).unwrap(),
+        NoFresnel,
+        stochastic_light_culling::Direction::Z,
+        stochastic_light_culling::Direction::Z,
+    );
+    assert_relative_eq!(
+        f64::from(lobe.value(Vec3::Z)),
+        1.0 / (4.0 * PI),
+        max_relative = 1e-6
+    );
+}

@@ -1,0 +1,81 @@
+//! A camera made of an engine's two matrices sees what they see.
+
+mod generators;
+mod reference;
+
+use approx::assert_relative_eq;
+use proptest::prelude::*;
+use reference::Vector;
+use stochastic_light_culling::{Camera, PixelRectangle, glam::Vec3};
+
+const IMAGE: [u32; 2] = [1920, 1080];
+
+proptest! {
+    #![proptest_config(generators::cases(2000))]
+
+    #[test]
+    fn points_pixels_and_depths_agree_with_the_matrices(
+        view in generators::view(),
+        direction in generators::unit_vector(),
+        distance in generators::log_uniform(1e-2, 1e4),
+        pixel in (0..1920_u32, 0..1080_u32),
+    ) {
+        let camera = Camera::new(view.from_world, view.projection).unwrap();
+
+        let point = direction * distance;
+        let exact = view.to_camera_space(Vector::from(point.to_f32()));
+        let seen = Vector::from(camera.to_camera_space(point.to_f32()));
+        let magnitude = distance + f64::from(view.from_world.w_axis.truncate().length());
+        prop_assert!((seen - exact).length() < 1e-6 * magnitude);
+
+        // The corners of a pixel, taken to depth 5, project back onto its edges.
+        let (x, y) = pixel;
+        let pixels = PixelRectangle { min: [x, y], max: [x + 1, y + 1] };
+        let tile = camera.tile_rectangle(IMAGE, pixels);
+        for (slopes, edges) in [(tile.min(), [x, y + 1]), (tile.max(), [x + 1, y])] {
+            let [u, v] = slopes.to_array().map(f64::from);
+            let ndc = view.ndc(Vector([5.0 * u, 5.0 * v, 5.0]));
+            let edge = [0.5 * (ndc[0] + 1.0) * 1920.0, 0.5 * (1.0 - ndc[1]) * 1080.0];
+            prop_assert!((edge[0] - f64::from(edges[0])).abs() < 0.02, "{edge:?} {edges:?}");
+            prop_assert!((edge[1] - f64::from(edges[1])).abs() < 0.02, "{edge:?} {edges:?}");
+        }
+        let middle = Vector::from(camera.point_in_pixel(IMAGE, [x, y], 5.0));
+        let [u, v, depth] = middle.0;
+        prop_assert!(depth == 5.0 && f64::from(tile.min().x) <= u / 5.0 && u / 5.0 <= f64::from(tile.max().x));
+        prop_assert!(f64::from(tile.min().y) <= v / 5.0 && v / 5.0 <= f64::from(tile.max().y));
+
+        // Depth buffers hold f32, which resolves large depths poorly.
+        let depth = distance.min(50.0);
+        let ndc_depth = view.ndc(Vector([0.0, 0.0, depth]))[2] as f32;
+        let resolution = 1e-6 * depth * depth / 0.1;
+        prop_assert!((f64::from(camera.depth(ndc_depth)) - depth).abs() < 1e-4 * depth + 4.0 * resolution);
+    }
+}
+
+#[test]
+fn look_at_looks_at_its_target() {
+    let (eye, target) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(-2.0, 0.5, 7.0));
+    let camera = Camera::look_at(eye, target, Vec3::Y, 1.2, 1.5, 0.1..f32::INFINITY).unwrap();
+    let seen = camera.to_camera_space(target);
+    assert_relative_eq!(seen.x, 0.0, epsilon = 1e-5);
+    assert_relative_eq!(seen.y, 0.0, epsilon = 1e-5);
+    assert_relative_eq!(seen.z, (target - eye).length(), max_relative = 1e-6);
+    assert!(camera.to_camera_space(target + Vec3::Y).y > 0.0);
+    assert_relative_eq!(camera.rotation().determinant(), -1.0, epsilon = 1e-5);
+}
+
+#[test]
+fn look_at_spans_its_field_of_view_and_its_depths() {
+    let camera = Camera::look_at(Vec3::ZERO, Vec3::X, Vec3::Z, 1.2, 1.5, 0.5..20.0).unwrap();
+    let all = PixelRectangle {
+        min: [0, 0],
+        max: IMAGE,
+    };
+    let view = camera.tile_rectangle(IMAGE, all);
+    let slope = 0.6_f32.tan();
+    assert_relative_eq!(view.max().y, slope, max_relative = 1e-6);
+    assert_relative_eq!(view.min().x, -1.5 * slope, max_relative = 1e-6);
+    assert_relative_eq!(camera.depth(0.0), 0.5, max_relative = 1e-6);
+    assert_relative_eq!(camera.depth(1.0), 20.0, max_relative = 1e-5);
+    assert!(camera.depth(f32::NAN).is_nan());
+}

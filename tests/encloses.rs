@@ -1,0 +1,277 @@
+//! Every bound contains every point of the isosurface that it bounds, with no tolerance; and none is
+//! larger than it has to be.
+
+mod generators;
+mod reference;
+
+use std::f64::consts::TAU;
+
+use generators::Lit;
+use proptest::prelude::*;
+use reference::{Brdf, Fresnel, Masking, Shape, Vector, smith_g1};
+use stochastic_light_culling::{
+    Bound, Bounded, Conductor, ConstantLobe, Dielectric, Direction, Ellipsoid, Ggx, GgxLobe,
+    LambertLobe, NoFresnel, Roulette, Schlick, Spheroid, Vpl, Xi, glam::Vec3,
+};
+
+/// A light and what the crate makes of it.
+#[derive(Debug)]
+struct Case {
+    brdf: Brdf,
+    lit: Lit,
+    position: Vec3,
+    roulette: (f32, f32, f32),
+}
+
+impl Case {
+    /// The radius of the isosurface, √(Φ f μ_o/(δξ)).
+    fn radius(&self, outgoing: Vector) -> f64 {
+        let (flux, delta, xi) = self.roulette;
+        let scale = f64::from(flux) / (f64::from(delta) * f64::from(xi));
+        (scale * self.lit.surface.value(self.brdf, outgoing)).sqrt()
+    }
+
+    fn bound<L: Bounded>(&self, lobe: L) -> L::Bound {
+        let (flux, delta, xi) = self.roulette;
+        Vpl::new(self.position, flux, lobe)
+            .unwrap()
+            .bound(&Roulette::new(delta).unwrap(), Xi::new(xi).unwrap())
+    }
+
+    fn spheroid(&self, roughness: f32, fresnel: Fresnel, masking: Masking) -> Spheroid {
+        let ggx = Ggx::new(roughness).unwrap();
+        match fresnel {
+            Fresnel::None => self.spheroid_of(ggx, NoFresnel, masking),
+            Fresnel::Schlick(f0) => self.spheroid_of(ggx, Schlick::new(f0).unwrap(), masking),
+            Fresnel::Dielectric(eta) => {
+                self.spheroid_of(ggx, Dielectric::new(eta).unwrap(), masking)
+            }
+            Fresnel::Conductor(eta, kappa) => {
+                self.spheroid_of(ggx, Conductor::new(eta, kappa).unwrap(), masking)
+            }
+        }
+    }
+
+    fn spheroid_of<F>(&self, ggx: Ggx, fresnel: F, masking: Masking) -> Spheroid
+    where
+        F: stochastic_light_culling::Fresnel,
+    {
+        let lobe = GgxLobe::new(ggx, fresnel, self.lit.normal, self.lit.incoming);
+        match masking {
+            Masking::HeightCorrelated => self.bound(lobe),
+            Masking::Separable => self.bound(lobe.separable()),
+        }
+    }
+
+    /// All bounds that the crate has for this light.
+    fn bounds(&self) -> Vec<(&'static str, Shape)> {
+        match self.brdf {
+            Brdf::Ggx {
+                roughness,
+                fresnel,
+                masking,
+            } => {
+                let spheroid = self.spheroid(roughness, fresnel, masking);
+                vec![
+                    ("spheroid", spheroid.into()),
+                    (
+                        "ellipsoid of the spheroid",
+                        Ellipsoid::from(spheroid).into(),
+                    ),
+                    ("sphere at the light", spheroid.sphere_at_focus().into()),
+                    (
+                        "sphere around the spheroid",
+                        spheroid.enclosing_sphere().into(),
+                    ),
+                ]
+            }
+            Brdf::Lambert { albedo } => {
+                let lobe = LambertLobe::new(albedo, self.lit.normal).unwrap();
+                vec![("sphere of Lambert's lobe", self.bound(lobe).into())]
+            }
+            Brdf::Constant => vec![("sphere of a point light", self.bound(ConstantLobe).into())],
+        }
+    }
+
+    /// Directions in which a bound is most likely to fail.
+    fn directions(&self, random: &[Vector]) -> Vec<Vector> {
+        let surface = self.lit.surface;
+        let mirror = surface.mirror().unit();
+        let across = match surface.normal.cross(surface.incoming) {
+            cross if cross.length() > 1e-12 => cross.unit(),
+            _ => mirror.orthogonal(),
+        };
+        let in_plane = across.cross(mirror);
+        let width = match self.brdf {
+            Brdf::Ggx { roughness, .. } => f64::from(roughness),
+            _ => 1.0,
+        };
+        let mut directions = vec![mirror, surface.normal, surface.incoming, -surface.incoming];
+        for step in 0..48 {
+            // Even in the half angle's tangent over α, so that narrow lobes are covered too.
+            let t = std::f64::consts::PI * (f64::from(step) + 0.5) / 48.0;
+            let angle = 2.0 * (width * (0.5 * t).tan()).atan();
+            for side in [in_plane, -in_plane, across, -across] {
+                directions.push(mirror.turned(side, angle));
+            }
+            let slanted = (in_plane + across * (f64::from(step) - 24.0)).unit();
+            directions.push(mirror.turned(slanted, angle));
+            // Just above the horizon, all around.
+            let azimuth = TAU * f64::from(step) / 48.0;
+            let tangent = surface.normal.orthogonal();
+            let tangent = tangent.turned(surface.normal.cross(tangent), azimuth);
+            directions.push(tangent.turned(surface.normal, 10_f64.powi(-(step % 7))));
+        }
+        directions.extend_from_slice(random);
+        directions
+    }
+}
+
+fn case() -> impl Strategy<Value = Case> {
+    (
+        generators::brdf(),
+        generators::lit(),
+        generators::position(),
+        generators::roulette(),
+    )
+        .prop_map(|(brdf, lit, position, roulette)| Case {
+            brdf,
+            lit,
+            position,
+            roulette,
+        })
+}
+
+proptest! {
+    #![proptest_config(generators::cases(2000))]
+
+    #[test]
+    fn every_bound_encloses_the_isosurface(
+        case in case(),
+        random in prop::collection::vec(generators::unit_vector(), 40),
+    ) {
+        let directions = case.directions(&random);
+        for (name, shape) in case.bounds() {
+            for direction in &directions {
+                let level = shape.level(case.position.into(), *direction * case.radius(*direction));
+                prop_assert!(level <= 1.0, "{name} is left at level {level} towards {direction:?}");
+            }
+        }
+    }
+
+    /// With F, G2 and the hemisphere put at their bounds, the spheroid is touched all along the plane
+    /// of incidence.
+    #[test]
+    fn spheroid_is_touched_in_the_plane_of_incidence(
+        roughness in generators::roughness(),
+        fresnel in generators::fresnel(),
+        lit in generators::lit(),
+        roulette in generators::roulette(),
+    ) {
+        let case = Case {
+            brdf: Brdf::Ggx { roughness, fresnel, masking: Masking::HeightCorrelated },
+            lit,
+            position: Vec3::ZERO,
+            roulette,
+        };
+        let spheroid = case.spheroid(roughness, fresnel, Masking::HeightCorrelated);
+        let shape = Shape::from(spheroid);
+        let (mu, alpha) = (lit.surface.incident_cosine(), f64::from(roughness));
+        let (flux, delta, xi) = roulette;
+        let most = fresnel.max_above_surface(mu) * smith_g1(alpha, mu) / (4.0 * mu)
+            * f64::from(flux) / (f64::from(delta) * f64::from(xi));
+        // Where F vanishes altogether there is nothing to touch, and the model has only rounding.
+        prop_assume!(fresnel.max_above_surface(mu) > 1e-15);
+        let mirror = lit.surface.mirror().unit();
+        let side = match lit.surface.normal.cross(lit.surface.incoming) {
+            cross if cross.length() > 1e-12 => cross.unit().cross(mirror),
+            _ => mirror.orthogonal(),
+        };
+        for step in 0..64 {
+            let angle = 2.0 * (alpha * (TAU * f64::from(step) / 128.0).tan()).atan();
+            let half = mirror.turned(side, angle) + lit.surface.incoming;
+            if half.dot(lit.surface.normal) < 1e-6 {
+                continue;
+            }
+            let ndf = reference::ggx_ndf(alpha, half.unit(), lit.surface.normal);
+            let level = shape.level(Vector::ZERO, mirror.turned(side, angle) * (most * ndf).sqrt());
+            // The level of a point near the light says little; its distance to the surface does.
+            let reach = level_reach(&shape, mirror.turned(side, angle));
+            let share = (most * ndf).sqrt() / reach;
+            prop_assert!(share > 1.0 - 1e-4 && level <= 1.0 + 1e-9,
+                "reaches {share} of the spheroid at {angle} rad, level {level}");
+        }
+    }
+
+    #[test]
+    fn spheres_are_touched(
+        roughness in generators::roughness(),
+        lit in generators::lit(),
+        roulette in generators::roulette(),
+    ) {
+        let case = Case { brdf: Brdf::Constant, lit, position: Vec3::ZERO, roulette };
+        let spheroid = case.spheroid(roughness, Fresnel::None, Masking::HeightCorrelated);
+        let shape = Shape::from(spheroid);
+        let tips = [1.0, -1.0].map(|end| shape.point(Vector([end, 0.0, 0.0])));
+        let around = Shape::from(spheroid.enclosing_sphere());
+        for tip in tips {
+            prop_assert!(around.level(Vector::ZERO, tip) > 1.0 - 1e-5);
+        }
+        let at_focus = Shape::from(spheroid.sphere_at_focus());
+        prop_assert!(at_focus.level(Vector::ZERO, tips[0]) > 1.0 - 1e-5);
+
+        let lambert = LambertLobe::new(0.8, lit.normal).unwrap();
+        let case = Case { brdf: Brdf::Lambert { albedo: 0.8 }, ..case };
+        let sphere = Shape::from(case.bound(lambert));
+        let side = lit.surface.normal.orthogonal();
+        let widest = lit.surface.normal.turned(side, (1.0_f64 / 3.0).powf(0.5).acos());
+        prop_assert!(sphere.level(Vector::ZERO, widest * case.radius(widest)) > 1.0 - 1e-5);
+
+        let case = Case { brdf: Brdf::Constant, ..case };
+        let sphere = Shape::from(case.bound(ConstantLobe));
+        prop_assert!(sphere.level(Vector::ZERO, side * case.radius(side)) > 1.0 - 1e-5);
+    }
+}
+
+/// How far `shape` reaches from the origin, which is inside, towards `direction`.
+fn level_reach(shape: &Shape, direction: Vector) -> f64 {
+    let scaled = |v: Vector| {
+        Vector(std::array::from_fn(|i| {
+            shape.axes[i].dot(v) / shape.semi_axes[i]
+        }))
+    };
+    let (d, o) = (scaled(direction), scaled(-(shape.offset + shape.origin)));
+    let (a, b, c) = (d.dot(d), d.dot(o), o.dot(o) - 1.0);
+    let root = (b * b - a * c).sqrt();
+    // Of the two forms of the root, the one that does not cancel.
+    if b > 0.0 {
+        -c / (b + root)
+    } else {
+        (root - b) / a
+    }
+}
+
+#[test]
+fn lights_that_reach_nothing_have_an_empty_range() {
+    let below = Direction::new(Vec3::new(0.3, 0.0, -1.0)).unwrap();
+    let ggx = Ggx::new(0.2).unwrap();
+    let (roulette, xi) = (Roulette::new(0.001).unwrap(), Xi::new(0.5).unwrap());
+    let lit_from_below = GgxLobe::new(ggx, NoFresnel, Direction::Z, below);
+    let lit_along = GgxLobe::new(ggx, NoFresnel, Direction::Z, Direction::X);
+    for lobe in [lit_from_below, lit_along] {
+        let light = Vpl::new(Vec3::ONE, 1.0, lobe).unwrap();
+        assert!(light.bound(&roulette, xi).is_empty());
+        assert_eq!(light.radiant_intensity(Vec3::Z), 0.0);
+    }
+    let lit = GgxLobe::new(ggx, NoFresnel, Direction::Z, -below);
+    let dark = Vpl::new(Vec3::ONE, 0.0, lit).unwrap().bound(&roulette, xi);
+    assert!(dark.is_empty() && Ellipsoid::from(dark).is_empty());
+    assert!(dark.enclosing_sphere().is_empty() && dark.sphere_at_focus().is_empty());
+    let black = LambertLobe::new(0.0, Direction::Z).unwrap();
+    assert!(
+        Vpl::new(Vec3::ONE, 1.0, black)
+            .unwrap()
+            .bound(&roulette, xi)
+            .is_empty()
+    );
+}

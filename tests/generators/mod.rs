@@ -1,0 +1,230 @@
+//! Inputs for the property tests, drawn more often where things break: at the ends of each range,
+//! near one, at grazing and at normal incidence.
+#![allow(dead_code, reason = "each test file uses some of the generators")]
+
+use std::f64::consts::TAU;
+
+use proptest::prelude::*;
+use stochastic_light_culling::{
+    Direction, Ellipsoid,
+    glam::{Mat3, Mat4, Vec3, Vec4},
+};
+
+use crate::reference::{
+    Brdf, Fresnel, Masking, Surface, Vector,
+    camera::{View, off_centre},
+};
+
+/// So many cases, or as many as the environment variable PROPTEST_CASES says.
+pub fn cases(number: u32) -> ProptestConfig {
+    let named = std::env::var_os("PROPTEST_CASES").is_some();
+    let default = ProptestConfig::default();
+    let cases = if named { default.cases } else { number };
+    ProptestConfig { cases, ..default }
+}
+
+/// Numbers spread evenly over decades.
+pub fn log_uniform(low: f64, high: f64) -> impl Strategy<Value = f64> + Clone {
+    let exponent = low.ln()..=high.ln();
+    exponent.prop_map(move |x| x.exp().clamp(low, high))
+}
+
+/// Numbers in [low, 1]: evenly, over decades, within decades of 1, and the ends.
+pub fn up_to_one(low: f64) -> impl Strategy<Value = f32> {
+    prop_oneof![
+        3 => log_uniform(low, 1.0),
+        3 => low..=1.0,
+        2 => log_uniform(1e-8, 0.5).prop_map(|gap| 1.0 - gap),
+        1 => Just(1.0),
+        1 => Just(low),
+    ]
+    .prop_map(|x| x as f32)
+}
+
+/// α in [1e-3, 1].
+pub fn roughness() -> impl Strategy<Value = f32> {
+    up_to_one(1e-3)
+}
+
+/// Unit vectors: any, along the axes, and nearly so.
+pub fn unit_vector() -> impl Strategy<Value = Vector> {
+    let anywhere = (-1.0..=1.0, 0.0..TAU).prop_map(|(z, angle): (f64, f64)| {
+        let radius = (1.0 - z * z).sqrt();
+        Vector([radius * angle.cos(), radius * angle.sin(), z])
+    });
+    let axis = (0..3_usize, any::<bool>()).prop_map(|(i, negative)| {
+        let mut axis = Vector::ZERO;
+        axis.0[i] = if negative { -1.0 } else { 1.0 };
+        axis
+    });
+    let near_axis = (axis.clone(), anywhere.clone(), log_uniform(1e-8, 0.1))
+        .prop_map(|(axis, off, size)| (axis + off * size).unit());
+    prop_oneof![4 => anywhere, 1 => axis, 1 => near_axis]
+}
+
+/// A lit surface point as the crate is given it, and the same in `f64`.
+#[derive(Clone, Copy, Debug)]
+pub struct Lit {
+    pub normal: Direction,
+    pub incoming: Direction,
+    pub surface: Surface,
+}
+
+impl Lit {
+    pub fn new(normal: Vector, incoming: Vector) -> Self {
+        let direction = |v: Vector| Direction::new(v.to_f32()).unwrap();
+        let (normal, incoming) = (direction(normal), direction(incoming));
+        Self {
+            normal,
+            incoming,
+            surface: Surface {
+                normal: Vector::from(*normal).unit(),
+                incoming: Vector::from(*incoming).unit(),
+            },
+        }
+    }
+}
+
+/// Surface points lit from above with μ in (1e-3, 1].
+pub fn lit() -> impl Strategy<Value = Lit> {
+    (unit_vector(), up_to_one(1.001e-3), 0.0..TAU).prop_map(|(normal, cosine, azimuth)| {
+        let tangent = normal.orthogonal();
+        let tangent = tangent.turned(normal.cross(tangent), azimuth);
+        let incoming = normal.turned(tangent, f64::from(cosine).acos());
+        Lit::new(normal, incoming)
+    })
+}
+
+pub fn fresnel() -> impl Strategy<Value = Fresnel> {
+    let f0 = prop_oneof![
+        3 => 0.0..=1.0_f32,
+        1 => 0.0..0.1_f32,
+        1 => Just(0.0_f32),
+        1 => Just(1.0_f32)
+    ];
+    let index = || {
+        prop_oneof![
+            2 => 1.0..3.0_f32,
+            2 => 0.3..1.0_f32,
+            1 => log_uniform(1e-3, 1e3).prop_map(|x| x as f32),
+            1 => log_uniform(1e-6, 1e-2).prop_map(|gap| (1.0 + gap) as f32),
+            1 => log_uniform(1e-6, 1e-2).prop_map(|gap| (1.0 - gap) as f32),
+        ]
+    };
+    let extinction = prop_oneof![
+        3 => 0.0..10.0_f32,
+        1 => log_uniform(1e-6, 1e2).prop_map(|x| x as f32),
+        1 => Just(0.0_f32)
+    ];
+    prop_oneof![
+        Just(Fresnel::None),
+        f0.prop_map(Fresnel::Schlick),
+        index().prop_map(Fresnel::Dielectric),
+        (index(), extinction).prop_map(|(eta, kappa)| Fresnel::Conductor(eta, kappa)),
+    ]
+}
+
+pub fn ggx_brdf() -> impl Strategy<Value = Brdf> {
+    let masking = prop_oneof![Just(Masking::HeightCorrelated), Just(Masking::Separable)];
+    (roughness(), fresnel(), masking).prop_map(|(roughness, fresnel, masking)| Brdf::Ggx {
+        roughness,
+        fresnel,
+        masking,
+    })
+}
+
+pub fn brdf() -> impl Strategy<Value = Brdf> {
+    let albedo = prop_oneof![3 => 0.001..=1.0_f32, 1 => Just(1.0_f32)];
+    prop_oneof![
+        4 => ggx_brdf(),
+        1 => albedo.prop_map(|albedo| Brdf::Lambert { albedo }),
+        1 => Just(Brdf::Constant),
+    ]
+}
+
+/// Flux, δ and ξ with Φ/(δξ) over 12 decades.
+pub fn roulette() -> impl Strategy<Value = (f32, f32, f32)> {
+    let xi = prop_oneof![3 => 1e-3..=1.0, 1 => log_uniform(2.3e-10, 1.0), 1 => Just(1.0)];
+    (log_uniform(1e-6, 1e6), log_uniform(1e-3, 1e3), xi)
+        .prop_map(|(quotient, delta, xi)| ((quotient * delta * xi) as f32, delta as f32, xi as f32))
+}
+
+/// Light positions: at the origin, and up to 1e4 in any direction.
+pub fn position() -> impl Strategy<Value = Vec3> {
+    prop_oneof![
+        1 => Just(Vec3::ZERO),
+        3 => (unit_vector(), log_uniform(1e-3, 1e4)).prop_map(|(v, s)| (v * s).to_f32()),
+    ]
+}
+
+/// Views of either handedness, anywhere, with fields of view to 170°, symmetric and off-centre, and
+/// clip depths that rise, fall, and reach to infinity.
+pub fn view() -> impl Strategy<Value = View> {
+    let slopes = || {
+        let slope = || log_uniform(0.05, 11.4).prop_map(|x| x as f32);
+        prop_oneof![
+            2 => slope().prop_map(|s| [-s, s]),
+            1 => (slope(), slope()).prop_map(|(a, b)| [-a, b]),
+            1 => (slope(), 0.1..2.0_f32).prop_map(|(a, b)| [a, a + b]),
+        ]
+    };
+    let clip_depth = prop_oneof![
+        Just([1.001, -0.1001]),
+        Just([0.0, 0.1]),
+        Just([1.0, -0.1]),
+        Just([-0.001, 0.1001]),
+        Just([1.002, -0.2002]),
+    ];
+    let place = (
+        unit_vector(),
+        0.0..TAU,
+        unit_vector(),
+        log_uniform(1e-3, 1e3),
+    );
+    let turn = (any::<bool>(), any::<bool>());
+    (turn, slopes(), slopes(), clip_depth, place).prop_map(
+        |((left_handed, mirrored), horizontal, vertical, clip_depth, place)| {
+            let (forward, roll, way, distance) = place;
+            let side = forward.orthogonal();
+            let right = side.turned(forward.cross(side), roll);
+            let up = forward.cross(right) * if mirrored { -1.0 } else { 1.0 };
+            let z = forward * if left_handed { 1.0 } else { -1.0 };
+            let rotation = Mat4::from_cols(
+                right.to_f32().extend(0.0),
+                up.to_f32().extend(0.0),
+                z.to_f32().extend(0.0),
+                Vec4::W,
+            );
+            let mut view = rotation.transpose();
+            view.w_axis = (way * distance).to_f32().extend(1.0);
+            View {
+                from_world: view,
+                projection: off_centre(left_handed, horizontal, vertical, clip_depth),
+                left_handed,
+            }
+        },
+    )
+}
+
+/// Ellipsoids with semi-axes within a ratio of 50, as α = 0.01 makes them, anywhere.
+pub fn ellipsoid() -> impl Strategy<Value = Ellipsoid> {
+    let ratio = || prop_oneof![2 => log_uniform(0.02, 1.0), 1 => Just(1.0)];
+    let axes = (unit_vector(), unit_vector());
+    (position(), axes, log_uniform(1e-3, 1e3), ratio(), ratio()).prop_map(
+        |(center, axes, longest, second, third)| {
+            let semi_axes = [longest, longest * second, longest * third].map(|x| x as f32);
+            ellipsoid_with(center, axes, Vec3::from_array(semi_axes))
+        },
+    )
+}
+
+/// The ellipsoid whose first axis is the first of `axes` and whose second is near the other.
+pub fn ellipsoid_with(center: Vec3, axes: (Vector, Vector), semi_axes: Vec3) -> Ellipsoid {
+    let u = axes.0;
+    let w = match u.cross(axes.1) {
+        cross if cross.length() > 1e-3 => cross.unit(),
+        _ => u.orthogonal(),
+    };
+    let rotation = Mat3::from_cols(u.to_f32(), w.cross(u).to_f32(), w.to_f32());
+    Ellipsoid::new(center, rotation, semi_axes).unwrap()
+}

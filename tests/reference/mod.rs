@@ -1,0 +1,19 @@
+//! The model that the crate is tested against: the papers' formulas as printed, in `f64`, sharing
+//! no code with `src/`.
+#![allow(
+    dead_code,
+    unused_imports,
+    reason = "each test file uses a part of the model"
+)]
+
+pub mod camera;
+pub mod fresnel;
+pub mod lobe;
+pub mod shape;
+pub mod vector;
+
+pub use camera::View;
+pub use fresnel::Fresnel;
+pub use lobe::{Brdf, Masking, Surface, ggx_ndf, smith_g1, smith_g2};
+pub use shape::Shape;
+pub use vector::Vector;

@@ -1,0 +1,267 @@
+//! A tile that holds a point of a light's bound is never rejected, and few others are accepted.
+
+mod generators;
+mod reference;
+
+use std::cmp::Ordering;
+
+use proptest::prelude::*;
+use reference::{Shape, Vector, View};
+use stochastic_light_culling::{
+    Bound, Bounded, Camera, CameraSphere, DepthInterval, Ellipsoid, Ggx, GgxLobe, NoFresnel,
+    PixelRectangle, Sphere, Stretch, TileGrid, TileRectangle, TileTest,
+    glam::{Vec2, Vec3},
+};
+
+/// The thinnest tile that holds `point` of camera space, if it lies before the eye and in the view.
+fn tile_around(camera: &Camera, point: Vector) -> Option<(TileRectangle, DepthInterval)> {
+    let [x, y, depth] = point.0;
+    if depth <= 1e-30 {
+        return None;
+    }
+    let (u, v) = (outward(x / depth), outward(y / depth));
+    let tile = TileRectangle::new(Vec2::new(u[0], v[0]), Vec2::new(u[1], v[1])).unwrap();
+    let [near, far] = outward(depth);
+    let all = PixelRectangle {
+        min: [0, 0],
+        max: [1, 1],
+    };
+    let view = camera.tile_rectangle([1, 1], all);
+    let inside = tile.min().cmpge(view.min()).all() && tile.max().cmple(view.max()).all();
+    inside.then(|| (tile, DepthInterval::new(near, far).unwrap()))
+}
+
+/// The nearest `f32` at or below, and at or above.
+fn outward(x: f64) -> [f32; 2] {
+    let near = x as f32;
+    match f64::from(near).total_cmp(&x) {
+        Ordering::Less => [near, next_up(near)],
+        Ordering::Equal => [near, near],
+        Ordering::Greater => [-next_up(-near), near],
+    }
+}
+
+/// `f32::next_up`, which is newer than the crate's least Rust version.
+fn next_up(x: f32) -> f32 {
+    match x.total_cmp(&0.0) {
+        _ if x == 0.0 => f32::from_bits(1),
+        Ordering::Greater => f32::from_bits(x.to_bits() + 1),
+        _ => f32::from_bits(x.to_bits() - 1),
+    }
+}
+
+/// A tile like that but with room to spare: the point is at its edge or within it.
+fn widened(
+    (tile, depths): (TileRectangle, DepthInterval),
+    [left, right, below, above]: [f32; 4],
+    [near, far]: [f32; 2],
+) -> (TileRectangle, DepthInterval) {
+    let tile = TileRectangle::new(
+        tile.min() - Vec2::new(left, below),
+        tile.max() + Vec2::new(right, above),
+    )
+    .unwrap();
+    let depths = DepthInterval::new(depths.near() * near, depths.far() * far).unwrap();
+    (tile, depths)
+}
+
+/// The exact distance of the box test: from Mc′ to the box around the tile's image.
+fn box_distance(stretch: &Stretch, tile: &TileRectangle, depths: &DepthInterval) -> f64 {
+    let m = stretch.matrix();
+    let [mx, my, mz] = [m.x_axis, m.y_axis, m.z_axis].map(Vector::from);
+    let center = Vector::from(stretch.center());
+    let mut apart = 0.0;
+    for i in 0..3 {
+        let corners = [tile.min().x, tile.max().x]
+            .into_iter()
+            .flat_map(|x| [tile.min().y, tile.max().y].map(|y| (f64::from(x), f64::from(y))));
+        let images = corners.flat_map(|(x, y)| {
+            let at_one = mx.0[i] * x + my.0[i] * y + mz.0[i];
+            [depths.near(), depths.far()].map(|depth| at_one * f64::from(depth))
+        });
+        let (low, high) = images.fold((f64::MAX, f64::MIN), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        apart += (low - center.0[i]).max(center.0[i] - high).max(0.0).powi(2);
+    }
+    apart.sqrt()
+}
+
+/// A view aimed so that `target` is in sight, or nearly.
+fn aimed(view: View, target: Vec3, distance: f64) -> View {
+    let mut view = view;
+    let seen = view.from_world.transform_vector3(target);
+    let depth = if view.left_handed {
+        distance
+    } else {
+        -distance
+    } as f32;
+    view.from_world.w_axis = (Vec3::new(0.0, 0.0, depth) - seen).extend(1.0);
+    view
+}
+
+proptest! {
+    #![proptest_config(generators::cases(4000))]
+
+    #[test]
+    fn tile_with_a_point_of_the_ellipsoid_is_touched(
+        ellipsoid in generators::ellipsoid(),
+        view in generators::view(),
+        distance in generators::log_uniform(1e-2, 1e3),
+        aim in any::<bool>(),
+        points in prop::collection::vec((generators::unit_vector(), prop_oneof![3 => Just(1.0), 1 => 0.0..1.0]), 30),
+        room in (prop::array::uniform4(0.0..0.3_f32), 0.1..1.0_f32, 1.0..10.0_f32),
+    ) {
+        let view = if aim { aimed(view, ellipsoid.center(), distance) } else { view };
+        let camera = Camera::new(view.from_world, view.projection).unwrap();
+        let stretch = Stretch::new(&ellipsoid, &camera).unwrap();
+        let shape = Shape::from(ellipsoid);
+        for (unit, depth) in points {
+            let seen = view.to_camera_space(shape.point(unit * (depth * (1.0 - 1e-12))));
+            let Some(thin) = tile_around(&camera, seen) else { continue };
+            prop_assert!(stretch.touches(&thin.0, &thin.1), "{thin:?}");
+            let (sides, near, far) = room;
+            let wide = widened(thin, sides, [near, far]);
+            prop_assert!(stretch.touches(&wide.0, &wide.1), "{wide:?}");
+        }
+    }
+
+    #[test]
+    fn tile_with_a_point_of_the_sphere_is_touched(
+        center in generators::position(),
+        radius in generators::log_uniform(1e-4, 1e4),
+        view in generators::view(),
+        aim in any::<bool>(),
+        points in prop::collection::vec(generators::unit_vector(), 30),
+    ) {
+        let view = if aim { aimed(view, center, 2.0) } else { view };
+        let camera = Camera::new(view.from_world, view.projection).unwrap();
+        let sphere = Sphere::new(center, radius as f32).unwrap();
+        let before_camera = CameraSphere::new(&sphere, &camera).unwrap();
+        let shape = Shape::from(sphere);
+        for unit in points {
+            let seen = view.to_camera_space(shape.point(unit * (1.0 - 1e-12)));
+            let Some((tile, depths)) = tile_around(&camera, seen) else { continue };
+            prop_assert!(before_camera.touches(&tile, &depths), "{tile:?} {depths:?}");
+        }
+    }
+
+    /// From the surface to the tile: every point of the lobe's spheroid, for α down to 0.01.
+    #[test]
+    fn tile_with_a_point_of_a_lobes_spheroid_is_touched(
+        roughness in generators::up_to_one(0.01),
+        lit in generators::lit(),
+        position in generators::position(),
+        scale in generators::log_uniform(1e-3, 1e3),
+        view in generators::view(),
+        points in prop::collection::vec(generators::unit_vector(), 30),
+    ) {
+        let view = aimed(view, position, 3.0);
+        let camera = Camera::new(view.from_world, view.projection).unwrap();
+        let lobe = GgxLobe::new(Ggx::new(roughness).unwrap(), NoFresnel, lit.normal, lit.incoming);
+        let spheroid = lobe.unit_bound().placed(position, scale as f32);
+        let stretch = Stretch::new(&Ellipsoid::from(spheroid), &camera).unwrap();
+        let shape = Shape::from(spheroid);
+        for unit in points {
+            let seen = view.to_camera_space(shape.point(unit * (1.0 - 1e-12)));
+            let Some((tile, depths)) = tile_around(&camera, seen) else { continue };
+            prop_assert!(stretch.touches(&tile, &depths), "{tile:?} {depths:?}");
+        }
+    }
+
+    /// The box test in f64 on the same M decides the same, but for a rim of rounding.
+    #[test]
+    fn box_test_is_no_looser_than_its_box(
+        ellipsoid in generators::ellipsoid(),
+        view in generators::view(),
+        distance in generators::log_uniform(1e-1, 1e2),
+        tile in (0..64_u32, 0..64_u32),
+        depths in (generators::log_uniform(1e-2, 1e3), 1.0..3.0),
+    ) {
+        let view = aimed(view, ellipsoid.center(), distance);
+        let camera = Camera::new(view.from_world, view.projection).unwrap();
+        let stretch = Stretch::new(&ellipsoid, &camera).unwrap();
+        let pixels = PixelRectangle { min: [tile.0, tile.1], max: [tile.0 + 1, tile.1 + 1] };
+        let rectangle = camera.tile_rectangle([64, 64], pixels);
+        let interval = DepthInterval::new(depths.0 as f32, (depths.0 * depths.1) as f32).unwrap();
+        let exact = box_distance(&stretch, &rectangle, &interval);
+        let touched = stretch.touches(&rectangle, &interval);
+        let rim = 1e-4 * (1.0 + exact + f64::from(stretch.center().length()));
+        prop_assert!(touched || exact > 1.0 - rim, "rejected at {exact}");
+        prop_assert!(!touched || exact < 1.0 + rim, "accepted at {exact}");
+    }
+
+    #[test]
+    fn depth_intervals_hold_every_surface_and_no_more(
+        depths in prop::collection::vec(
+            prop_oneof![
+                5 => generators::log_uniform(1e-3, 1e6).prop_map(|d| d as f32),
+                1 => Just(f32::INFINITY), 1 => Just(f32::NAN), 1 => Just(0.0), 1 => Just(-1.0),
+                1 => Just(7.0_f32),
+            ],
+            0..40),
+    ) {
+        let surfaces: Vec<f32> = depths.iter().copied().filter(|d| *d > 0.0 && d.is_finite()).collect();
+        let holds = |interval: &DepthInterval, d: f32| interval.near() <= d && d <= interval.far();
+
+        let whole = DepthInterval::around(depths.iter().copied());
+        let halves = DepthInterval::half_z(depths.iter().copied());
+        let parts = DepthInterval::modified_half_z(depths.iter().copied());
+        prop_assert_eq!(whole.is_none(), surfaces.is_empty());
+        prop_assert_eq!(halves.is_none(), surfaces.is_empty());
+        prop_assert_eq!(parts[0].is_none(), surfaces.is_empty());
+        for d in &surfaces {
+            prop_assert!(holds(&whole.unwrap(), *d));
+            prop_assert!(halves.unwrap().iter().any(|half| holds(half, *d)));
+            prop_assert!(parts.iter().flatten().filter(|part| holds(part, *d)).count() == 1);
+        }
+        for interval in parts.iter().flatten().chain(whole.iter()) {
+            prop_assert!(surfaces.contains(&interval.near()) && surfaces.contains(&interval.far()));
+        }
+    }
+
+    #[test]
+    fn grid_holds_every_pixel_once(width in 1..200_u32, height in 1..200_u32, tile_size in 1..40_u32) {
+        let grid = TileGrid::new([width, height], tile_size).unwrap();
+        let mut seen = vec![0; (width * height) as usize];
+        for tile in grid.tiles() {
+            for pixel in grid.pixels(tile).pixels() {
+                prop_assert_eq!(grid.tile_of(pixel), tile);
+                seen[(pixel[1] * width + pixel[0]) as usize] += 1;
+            }
+        }
+        prop_assert!(seen.into_iter().all(|count| count == 1));
+    }
+}
+
+/// The light behind the eye whose bound reaches round it, and one that does not.
+#[test]
+fn lights_around_and_behind_the_camera() {
+    let camera = Camera::look_at(Vec3::ZERO, -Vec3::Z, Vec3::Y, 1.0, 1.0, 0.1..100.0).unwrap();
+    let all = camera.tile_rectangle(
+        [1, 1],
+        PixelRectangle {
+            min: [0, 0],
+            max: [1, 1],
+        },
+    );
+    let depths = DepthInterval::new(1.0, 2.0).unwrap();
+    for (center, radius, touched) in [
+        (3.0, 4.5, true),
+        (3.0, 3.5, false),
+        (-1.5, 0.1, true),
+        (0.0, 50.0, true),
+    ] {
+        let center = Vec3::new(0.0, 0.0, center);
+        let sphere = CameraSphere::new(&Sphere::new(center, radius).unwrap(), &camera).unwrap();
+        assert_eq!(sphere.touches(&all, &depths), touched);
+        let axes = stochastic_light_culling::glam::Mat3::IDENTITY;
+        let ellipsoid = Ellipsoid::new(center, axes, Vec3::splat(radius)).unwrap();
+        assert_eq!(
+            Stretch::new(&ellipsoid, &camera)
+                .unwrap()
+                .touches(&all, &depths),
+            touched
+        );
+    }
+}
