@@ -1,0 +1,244 @@
+//! One group for each step of the pipeline, over 1024 lights that differ. Times are per light.
+#![allow(
+    missing_docs,
+    reason = "criterion_group! makes a public function without any"
+)]
+
+use std::hint::black_box;
+
+use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use stochastic_light_culling::{
+    Bound, Bounded, Camera, CameraSphere, Conductor, DepthInterval, Dielectric, Direction,
+    Ellipsoid, Fresnel, Ggx, GgxLobe, Interleave, LambertLobe, Lobe, NoFresnel, PixelRectangle,
+    Roulette, Schlick, Stretch, TileGrid, TileTest, Vpl, Xi,
+    glam::{Mat3, Vec3},
+    stretch_matrix, stretch_rotation,
+};
+
+const LIGHTS: u32 = 1024;
+
+type Group<'a> = BenchmarkGroup<'a, criterion::measurement::WallTime>;
+
+/// `number` of light `light`, in [−1, 1].
+fn random(light: u32, number: u32) -> f32 {
+    2.0 * Xi::hashed(light, number, 1).get() - 1.0
+}
+
+fn random_vector(light: u32, first: u32) -> Vec3 {
+    Vec3::from_array([0, 1, 2].map(|i| random(light, first + i)))
+}
+
+fn direction(vector: Vec3) -> Direction {
+    Direction::new(vector).expect("random vectors are not zero")
+}
+
+fn glossy_light<F: Fresnel>(light: u32, fresnel: F) -> Vpl<GgxLobe<F>> {
+    let normal = direction(random_vector(light, 0));
+    let incoming = direction(*normal + 0.9 * random_vector(light, 3));
+    let roughness = [0.05, 0.1, 0.2, 0.4][light as usize % 4];
+    let ggx = Ggx::new(roughness).expect("in range");
+    let lobe = GgxLobe::new(ggx, fresnel, normal, incoming);
+    Vpl::new(10.0 * random_vector(light, 6), 1.0, lobe).expect("in range")
+}
+
+fn glossy_lights<F: Fresnel>(fresnel: F) -> Vec<Vpl<GgxLobe<F>>> {
+    (0..LIGHTS)
+        .map(|light| glossy_light(light, fresnel))
+        .collect()
+}
+
+fn diffuse_lights() -> Vec<Vpl<LambertLobe>> {
+    let light = |i| {
+        let lobe = LambertLobe::new(0.8, direction(random_vector(i, 0))).expect("in range");
+        Vpl::new(10.0 * random_vector(i, 6), 1.0, lobe).expect("in range")
+    };
+    (0..LIGHTS).map(light).collect()
+}
+
+fn camera() -> Camera {
+    let eye = Vec3::new(0.0, 5.0, 25.0);
+    Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 1.0, 16.0 / 9.0, 0.1..100.0).expect("in range")
+}
+
+fn roulette() -> Roulette {
+    Roulette::new(0.001).expect("in range")
+}
+
+fn spheroids() -> Vec<stochastic_light_culling::Spheroid> {
+    glossy_lights(NoFresnel)
+        .iter()
+        .zip(0..)
+        .map(|(light, i)| light.bound(&roulette(), Xi::hashed(i, 0, 0)))
+        .collect()
+}
+
+/// Times `step` over all of `inputs`, per input.
+fn per_item<T, U>(group: &mut Group, name: &str, inputs: &[T], step: impl Fn(&T) -> U) {
+    group.throughput(Throughput::Elements(inputs.len() as u64));
+    group.bench_function(name, |bencher| {
+        bencher.iter(|| {
+            for input in inputs {
+                black_box(step(black_box(input)));
+            }
+        });
+    });
+}
+
+fn lobe_value<F: Fresnel>(group: &mut Group, name: &str, fresnel: F) {
+    let inputs: Vec<_> = glossy_lights(fresnel)
+        .into_iter()
+        .zip(0..)
+        .map(|(light, i)| (light, *direction(random_vector(i, 9))))
+        .collect();
+    per_item(group, name, &inputs, |(light, outgoing)| {
+        light.lobe().value(*outgoing)
+    });
+}
+
+fn brdf(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("brdf");
+    lobe_value(&mut group, "ggx, no Fresnel", NoFresnel);
+    lobe_value(
+        &mut group,
+        "ggx, Schlick",
+        Schlick::new(0.9).expect("in range"),
+    );
+    lobe_value(
+        &mut group,
+        "ggx, dielectric",
+        Dielectric::new(1.5).expect("in range"),
+    );
+    lobe_value(
+        &mut group,
+        "ggx, conductor",
+        Conductor::new(0.2, 3.5).expect("in range"),
+    );
+    let inputs: Vec<_> = diffuse_lights()
+        .into_iter()
+        .zip(0..)
+        .map(|(light, i)| (light, *direction(random_vector(i, 9))))
+        .collect();
+    per_item(&mut group, "lambert", &inputs, |(light, outgoing)| {
+        light.lobe().value(*outgoing)
+    });
+}
+
+fn range(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("range");
+    let numbers: Vec<u32> = (0..LIGHTS).collect();
+    per_item(&mut group, "hash", &numbers, |light| {
+        Xi::hashed(*light, 7, 1)
+    });
+    let xis: Vec<Xi> = numbers
+        .iter()
+        .map(|light| Xi::hashed(*light, 7, 1))
+        .collect();
+    let roulette = roulette();
+    per_item(&mut group, "scale", &xis, |xi| roulette.scale(1.0, *xi));
+    per_item(&mut group, "estimate", &xis, |xi| {
+        roulette.estimate(0.001, 2.0, *xi)
+    });
+}
+
+fn bound(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("bound");
+    let metal = glossy_lights(Schlick::new(0.9).expect("in range"));
+    per_item(
+        &mut group,
+        "spheroid, no Fresnel",
+        &glossy_lights(NoFresnel),
+        |light| light.lobe().unit_bound(),
+    );
+    per_item(&mut group, "spheroid, Schlick", &metal, |light| {
+        light.lobe().unit_bound()
+    });
+    per_item(&mut group, "sphere, Lambert", &diffuse_lights(), |light| {
+        light.lobe().unit_bound()
+    });
+    let unit = metal[0].lobe().unit_bound();
+    per_item(&mut group, "placing", &metal, |light| {
+        unit.placed(light.position(), 3.0)
+    });
+    per_item(&mut group, "enclosing sphere", &spheroids(), |spheroid| {
+        spheroid.enclosing_sphere()
+    });
+}
+
+/// M as B times S, as the paper has it: what the triangular form replaces.
+fn stretch_as_product(ellipsoid: &Ellipsoid, camera: &Camera) -> (Mat3, Vec3) {
+    let s = stretch_matrix(ellipsoid, camera);
+    let m = stretch_rotation(s) * s;
+    (m, m * camera.to_camera_space(ellipsoid.center()))
+}
+
+fn stretch(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("stretch");
+    let (camera, spheroids) = (camera(), spheroids());
+    let ellipsoids: Vec<Ellipsoid> = spheroids.iter().copied().map(Ellipsoid::from).collect();
+    per_item(&mut group, "ellipsoid of a spheroid", &spheroids, |s| {
+        Ellipsoid::from(*s)
+    });
+    per_item(&mut group, "triangular form", &ellipsoids, |e| {
+        Stretch::new(e, &camera)
+    });
+    per_item(&mut group, "product of B and S", &ellipsoids, |e| {
+        stretch_as_product(e, &camera)
+    });
+}
+
+fn tile(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("tile");
+    let (camera, spheroids) = (camera(), spheroids());
+    let pixels = PixelRectangle {
+        min: [7, 5],
+        max: [8, 6],
+    };
+    let rectangle = camera.tile_rectangle([15, 9], pixels);
+    let depths = DepthInterval::new(20.0, 26.0).expect("in order");
+    let stretches: Vec<_> = spheroids
+        .iter()
+        .filter_map(|spheroid| Stretch::new(&Ellipsoid::from(*spheroid), &camera))
+        .collect();
+    let spheres: Vec<_> = spheroids
+        .iter()
+        .filter_map(|spheroid| CameraSphere::new(&spheroid.enclosing_sphere(), &camera))
+        .collect();
+    per_item(&mut group, "ellipsoid", &stretches, |light| {
+        light.touches(&rectangle, &depths)
+    });
+    per_item(&mut group, "sphere", &spheres, |light| {
+        light.touches(&rectangle, &depths)
+    });
+
+    let grid = TileGrid::new([240, 135], 16).expect("not empty");
+    let tiles: Vec<_> = grid.tiles().collect();
+    per_item(&mut group, "rectangle", &tiles, |tile| {
+        camera.tile_rectangle([240, 135], grid.pixels(*tile))
+    });
+    let buffer: Vec<f32> = (0..256).map(|i| 20.0 + 3.0 * random(i, 0)).collect();
+    per_item(
+        &mut group,
+        "Modified HalfZ of 256 pixels",
+        &[buffer],
+        |buffer| DepthInterval::modified_half_z(buffer.iter().copied()),
+    );
+}
+
+fn interleave(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("interleave");
+    let interleave = Interleave::new([1920, 1080], 8).expect("fits");
+    let pixels: Vec<[u32; 2]> = (0..LIGHTS).map(|i| [i, i / 2]).collect();
+    per_item(&mut group, "split pixel", &pixels, |pixel| {
+        interleave.split_pixel(*pixel)
+    });
+    let split: Vec<_> = pixels
+        .iter()
+        .map(|pixel| interleave.split_pixel(*pixel))
+        .collect();
+    per_item(&mut group, "join pixel", &split, |(subregion, local)| {
+        interleave.join_pixel(*subregion, *local)
+    });
+}
+
+criterion_group!(steps, brdf, range, bound, stretch, tile, interleave);
+criterion_main!(steps);
