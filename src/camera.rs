@@ -118,14 +118,18 @@ impl Camera {
         self.rotation
     }
 
-    /// `point` of world space in camera space.
+    /// `point` of world space in camera space, rounded once: where world and camera are far from the
+    /// origin, nothing of a near point is lost.
     pub fn to_camera_space(&self, point: Vec3) -> Vec3 {
-        self.rotation * point + self.translation
+        let row = |i| math::dot(self.rotation.row(i), point) + f64::from(self.translation[i]);
+        Vec3::new(row(0) as f32, row(1) as f32, row(2) as f32)
     }
 
-    /// An upper bound of the terms that [`to_camera_space`](Self::to_camera_space) sums.
-    pub(crate) fn magnitude_of_terms(&self, point: Vec3) -> f32 {
-        point.length() + self.translation.length()
+    /// What [`to_camera_space`](Self::to_camera_space) can be off by before it rounds, in length: the
+    /// rounding of `f64` in terms this large.
+    pub(crate) fn rounding_of_terms(&self, point: Vec3) -> f32 {
+        const ROUNDINGS: f32 = 8.0 * f64::EPSILON as f32;
+        ROUNDINGS * (point.abs().element_sum() + self.translation.abs().element_sum())
     }
 
     /// How far the rotation is from orthonormal, element by element.

@@ -141,3 +141,8 @@ pub use tile::{DepthInterval, PixelRectangle, TileGrid, TileRectangle, TileTest}
 pub use vpl::Vpl;
 
 pub use glam;
+
+/// The README's program is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -26,17 +26,16 @@
 //!
 //! # What rounding costs
 //!
-//! With u = 2⁻²⁴ and p a point of the ellipsoid, the image of p is off, to first order in u, by at
-//! most
+//! With u = 2⁻²⁴, s the secant of the corner of the view, and δ the deviation of V and R from
+//! orthonormal, the image of a point p of the ellipsoid and the box of a tile that holds it are
+//! computed apart from each other by at most
 //!
-//! - (r_max/r_min)(56u + 3δ) for the axes (three products and two sums in each component of V R,
-//!   δ the deviation of V and R from orthonormal) and for the roots, products and quotients of M;
-//! - 12u (‖c‖ + ‖o‖)/r_min for V c + o and M c′, whose terms are at most this large;
-//! - 12u s (‖c‖ + ‖o‖ + r_max)/r_min for the tile's box: its terms are at most s·z/r_min, s the secant
-//!   of the corner of the view and z the depth of p.
+//! - (r_max/r_min)(128u + 6δ) for the axes and the elements of M,
+//! - 6u ‖c′‖/r_min for c′ and M c′,
+//! - 9u s z/r_min for the box, z ≤ max(c′_z, 0) + r_max the greatest depth of p.
 //!
-//! The semi-axes are enlarged by the sum, so a tile with a point of the ellipsoid in it is never
-//! found apart from it.
+//! The semi-axes are enlarged by the sum, so that such a tile is never found apart from the light.
+//! `ARCHITECTURE.md` counts the roundings.
 
 use glam::{Mat3, Vec3};
 
@@ -101,11 +100,14 @@ impl Stretch {
             });
         }
         let unscaled = triangular_stretch(camera.rotation() * ellipsoid.rotation(), semi_axes);
-        let margin = rounding_margin(ellipsoid, camera, shortest, longest);
-        let matrix = unscaled * (1.0 / (shortest * (1.0 + margin)));
+        let center = camera.to_camera_space(ellipsoid.center());
+        let rounding = rounding_before(camera, ellipsoid.center(), center, longest);
+        let tilt = longest * (128.0 * math::UNIT_ROUNDOFF + 6.0 * camera.rotation_deviation());
+        let enlarged = math::round_up(shortest + (rounding + tilt), 4);
+        let matrix = unscaled * (1.0 / enlarged);
         Some(Self {
             matrix,
-            center: matrix * camera.to_camera_space(ellipsoid.center()),
+            center: matrix * center,
         })
     }
 
@@ -159,14 +161,13 @@ fn median(v: Vec3) -> f32 {
     v.x.max(v.y).min(v.x.min(v.y).max(v.z))
 }
 
-/// The sum of the module's section on rounding.
-fn rounding_margin(ellipsoid: &Ellipsoid, camera: &Camera, shortest: f32, longest: f32) -> f32 {
-    let u = math::UNIT_ROUNDOFF;
-    let aspect_ratio = longest / shortest;
-    let distance = camera.magnitude_of_terms(ellipsoid.center()) / shortest;
-    let secant = camera.corner_secant();
-    aspect_ratio * (56.0 * u + 3.0 * camera.rotation_deviation())
-        + 12.0 * u * (distance + secant * (distance + aspect_ratio))
+/// The length by which rounding can move a point within `reach` of `center`, in camera space, against
+/// the box of a tile that holds it: all but the first term of the module's section on rounding.
+fn rounding_before(camera: &Camera, world_center: Vec3, center: Vec3, reach: f32) -> f32 {
+    let farthest_depth = center.z.max(0.0) + reach;
+    let of_center = 6.0 * center.length();
+    let of_box = 9.0 * camera.corner_secant() * farthest_depth;
+    math::UNIT_ROUNDOFF * (of_center + of_box) + camera.rounding_of_terms(world_center)
 }
 
 /// A sphere as a tile test wants it: in camera space, with nothing stretched.
@@ -190,10 +191,7 @@ impl CameraSphere {
                 radius_squared: f32::INFINITY,
             });
         }
-        // The terms of the centre and of the tile's box, as for an ellipsoid, and a view that scales.
-        let terms = camera.magnitude_of_terms(sphere.center());
-        let rounding =
-            12.0 * math::UNIT_ROUNDOFF * (terms + camera.corner_secant() * (terms + radius));
+        let rounding = rounding_before(camera, sphere.center(), center, radius);
         let scaling = 3.0 * camera.rotation_deviation() * radius;
         let enlarged = math::round_up(radius + rounding + scaling, 8);
         Some(Self {

@@ -3,10 +3,8 @@
 mod generators;
 mod reference;
 
-use std::cmp::Ordering;
-
 use proptest::prelude::*;
-use reference::{Shape, Vector, View};
+use reference::{Shape, Vector, View, exact::outward};
 use stochastic_light_culling::{
     Bound, Bounded, Camera, CameraSphere, DepthInterval, Ellipsoid, Ggx, GgxLobe, NoFresnel,
     PixelRectangle, Sphere, Stretch, TileGrid, TileRectangle, TileTest,
@@ -19,9 +17,9 @@ fn tile_around(camera: &Camera, point: Vector) -> Option<(TileRectangle, DepthIn
     if depth <= 1e-30 {
         return None;
     }
-    let (u, v) = (outward(x / depth), outward(y / depth));
+    let (u, v) = (outward((x / depth).into()), outward((y / depth).into()));
     let tile = TileRectangle::new(Vec2::new(u[0], v[0]), Vec2::new(u[1], v[1])).unwrap();
-    let [near, far] = outward(depth);
+    let [near, far] = outward(depth.into());
     let all = PixelRectangle {
         min: [0, 0],
         max: [1, 1],
@@ -29,25 +27,6 @@ fn tile_around(camera: &Camera, point: Vector) -> Option<(TileRectangle, DepthIn
     let view = camera.tile_rectangle([1, 1], all);
     let inside = tile.min().cmpge(view.min()).all() && tile.max().cmple(view.max()).all();
     inside.then(|| (tile, DepthInterval::new(near, far).unwrap()))
-}
-
-/// The nearest `f32` at or below, and at or above.
-fn outward(x: f64) -> [f32; 2] {
-    let near = x as f32;
-    match f64::from(near).total_cmp(&x) {
-        Ordering::Less => [near, next_up(near)],
-        Ordering::Equal => [near, near],
-        Ordering::Greater => [-next_up(-near), near],
-    }
-}
-
-/// `f32::next_up`, which is newer than the crate's least Rust version.
-fn next_up(x: f32) -> f32 {
-    match x.total_cmp(&0.0) {
-        _ if x == 0.0 => f32::from_bits(1),
-        Ordering::Greater => f32::from_bits(x.to_bits() + 1),
-        _ => f32::from_bits(x.to_bits() - 1),
-    }
 }
 
 /// A tile like that but with room to spare: the point is at its edge or within it.

@@ -15,7 +15,7 @@ impl Bounded for LambertLobe {
         let reach = math::sqrt(self.albedo() * core::f32::consts::FRAC_1_PI);
         Sphere::from_parts(
             *self.normal() * (CENTER * reach),
-            math::round_up(RADIUS * reach, 8),
+            math::round_up(RADIUS * reach, 16),
         )
     }
 }

@@ -39,7 +39,7 @@ impl Spheroid {
         Self {
             focus: Vec3::ZERO,
             axis,
-            radius: math::round_up(radius * (1.0 + x * (1.0 + x)), 8),
+            radius: math::round_up(radius * (1.0 + x * (1.0 + x)), 16),
             roughness,
         }
     }

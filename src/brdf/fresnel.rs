@@ -15,8 +15,8 @@ pub trait Fresnel: Copy {
     /// [Tokuyoshi & Harada 2017, supplemental Eq. 6].
     fn maximum(&self, smallest_cosine: f32) -> f32 {
         let head_on = self.reflectance(1.0);
-        let grazing = self.reflectance(math::round_down(smallest_cosine, 8));
-        math::round_up(head_on.max(grazing), 32).min(1.0)
+        let grazing = self.reflectance(math::round_down(smallest_cosine, 16));
+        math::round_up(head_on.max(grazing), 64).min(1.0)
     }
 }
 

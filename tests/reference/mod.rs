@@ -7,6 +7,7 @@
 )]
 
 pub mod camera;
+pub mod exact;
 pub mod fresnel;
 pub mod lobe;
 pub mod shape;

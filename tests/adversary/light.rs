@@ -1,0 +1,216 @@
+//! Lights from the whole domain, and how far they reach.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use fastrand::Rng;
+use stochastic_light_culling::{
+    Bounded, Conductor, ConstantLobe, Dielectric, Direction, Ggx, GgxLobe, LambertLobe, NoFresnel,
+    Roulette, Schlick, Spheroid, Vpl, Xi, glam::Vec3,
+};
+use twofloat::TwoFloat as Real;
+
+use super::{Bound, direction, log_uniform, unit_vector, up_to_one};
+use crate::reference::exact::{Exact, value};
+use crate::reference::{Brdf, Fresnel, Masking, Vector};
+
+/// A light in one frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Light {
+    pub brdf: Brdf,
+    pub normal: Direction,
+    pub incoming: Direction,
+    pub position: Vec3,
+    pub flux: f32,
+    pub delta: f32,
+    pub xi: f32,
+}
+
+impl Light {
+    /// Any light of the domain: α from 1e-6, μ from 1e-7, ranges from 1e-12 to 1e12, ξ from 2⁻³², up
+    /// to 1e6 ranges from the origin.
+    pub fn draw(rng: &mut Rng) -> Self {
+        let range = log_uniform(rng, 1e-12, 1e12);
+        let distance = range * log_uniform(rng, 1e-3, 1e6);
+        let mu = up_to_one(rng, 1e-7);
+        let brdf = match rng.u8(0..16) {
+            0 => Brdf::Lambert {
+                albedo: up_to_one(rng, 1e-6) as f32,
+            },
+            1 => Brdf::Constant,
+            _ => Brdf::Ggx {
+                roughness: up_to_one(rng, 1e-6) as f32,
+                fresnel: fresnel(rng),
+                masking: if rng.bool() {
+                    Masking::HeightCorrelated
+                } else {
+                    Masking::Separable
+                },
+            },
+        };
+        Self::with(rng, brdf, mu, range, distance)
+    }
+
+    /// A light that reaches as far as `range` at the peak of its lobe, `distance` from the origin.
+    pub fn with(rng: &mut Rng, brdf: Brdf, mu: f64, range: f64, distance: f64) -> Self {
+        let normal = unit_vector(rng);
+        let tangent = normal.orthogonal();
+        let tangent = tangent.turned(normal.cross(tangent), rng.f64() * TAU);
+        let incoming = tangent * (1.0 - mu * mu).sqrt() + normal * mu;
+        let normal = direction(normal);
+        let mut light = Self {
+            brdf,
+            normal,
+            // Normal incidence is so to the last bit.
+            incoming: if mu == 1.0 {
+                normal
+            } else {
+                direction(incoming)
+            },
+            position: (unit_vector(rng) * distance).to_f32(),
+            flux: 1.0,
+            delta: log_uniform(rng, 1e-6, 1e3) as f32,
+            xi: up_to_one(rng, 2.0_f64.powi(-32)) as f32,
+        };
+        let unit_reach = light.reach(light.peak()).hi().max(1e-15);
+        light.flux = (range / unit_reach).powi(2).clamp(1e-37, 1e37) as f32;
+        light
+    }
+
+    fn unit_normal(&self) -> Exact {
+        Exact::from(*self.normal).unit()
+    }
+
+    fn unit_incoming(&self) -> Exact {
+        Exact::from(*self.incoming).unit()
+    }
+
+    /// About where the lobe is largest.
+    pub fn peak(&self) -> Exact {
+        let (n, w) = (self.unit_normal(), self.unit_incoming());
+        match self.brdf {
+            Brdf::Ggx { .. } => n * (n.dot(w) * 2.0) - w,
+            _ => n,
+        }
+    }
+
+    /// l_max = √(Φ f μ_o/(δξ)).
+    pub fn reach(&self, outgoing: Exact) -> Real {
+        let value = value(
+            self.brdf,
+            self.unit_normal(),
+            self.unit_incoming(),
+            outgoing,
+        );
+        let divisor = Real::new_mul(self.delta.into(), self.xi.into());
+        (Real::from(f64::from(self.flux)) / divisor * value).sqrt()
+    }
+
+    /// A direction in which a bound is likely to fail: about the peak, in the plane of incidence and
+    /// across it, at all angles that the lobe's width makes interesting; at grazing; anywhere.
+    pub fn outgoing(&self, rng: &mut Rng) -> Exact {
+        let exact = |v: Vector| Exact(v.0.map(Real::from));
+        let normal = Vector::from(*self.normal);
+        match rng.u8(0..10) {
+            0 => self.peak().unit(),
+            1 => exact(unit_vector(rng)).unit(),
+            2 => {
+                let tangent = normal.cross(unit_vector(rng));
+                exact(tangent + normal * log_uniform(rng, 1e-8, 1.0)).unit()
+            }
+            _ => self.about_peak(rng),
+        }
+    }
+
+    fn about_peak(&self, rng: &mut Rng) -> Exact {
+        let width = match self.brdf {
+            Brdf::Ggx { roughness, .. } => f64::from(roughness),
+            _ => 1.0,
+        };
+        let peak = self.peak();
+        let middle = Vector(peak.0.map(|x| x.hi()));
+        let across = match Vector::from(*self.normal).cross(Vector::from(*self.incoming)) {
+            cross if cross.length() > 1e-7 => cross.unit(),
+            _ => middle.orthogonal(),
+        };
+        let along = across.cross(middle);
+        let side = match rng.u8(0..4) {
+            0 => across,
+            1 => along + across * (10.0 * (rng.f64() - 0.5)),
+            _ => along,
+        };
+        let side = Exact(side.unit().0.map(Real::from));
+        // The direction at the angle 2 atan t from the peak: ((1 − t²) peak + 2t side)/(1 + t²).
+        let tangent = width * (rng.f64() * FRAC_PI_2).tan();
+        let t = Real::from(if rng.bool() { tangent } else { -tangent });
+        (peak * (Real::from(1.0) - t * t) + side * (t * 2.0)).unit()
+    }
+
+    /// The crate's bound of this light.
+    pub fn bound(&self) -> Bound {
+        match self.brdf {
+            Brdf::Constant => Bound::Sphere(self.bound_of(ConstantLobe)),
+            Brdf::Lambert { albedo } => {
+                let lobe = LambertLobe::new(albedo, self.normal).expect("in the domain");
+                Bound::Sphere(self.bound_of(lobe))
+            }
+            Brdf::Ggx {
+                roughness,
+                fresnel,
+                masking,
+            } => {
+                let ggx = Ggx::new(roughness).expect("in the domain");
+                Bound::Spheroid(self.spheroid(ggx, fresnel, masking).expect("in the domain"))
+            }
+        }
+    }
+
+    fn spheroid(
+        &self,
+        ggx: Ggx,
+        fresnel: Fresnel,
+        masking: Masking,
+    ) -> Result<Spheroid, stochastic_light_culling::Error> {
+        Ok(match fresnel {
+            Fresnel::None => self.spheroid_of(ggx, NoFresnel, masking),
+            Fresnel::Schlick(f0) => self.spheroid_of(ggx, Schlick::new(f0)?, masking),
+            Fresnel::Dielectric(eta) => self.spheroid_of(ggx, Dielectric::new(eta)?, masking),
+            Fresnel::Conductor(eta, kappa) => {
+                self.spheroid_of(ggx, Conductor::new(eta, kappa)?, masking)
+            }
+        })
+    }
+
+    fn spheroid_of<F>(&self, ggx: Ggx, fresnel: F, masking: Masking) -> Spheroid
+    where
+        F: stochastic_light_culling::Fresnel,
+    {
+        let lobe = GgxLobe::new(ggx, fresnel, self.normal, self.incoming);
+        match masking {
+            Masking::HeightCorrelated => self.bound_of(lobe),
+            Masking::Separable => self.bound_of(lobe.separable()),
+        }
+    }
+
+    fn bound_of<L: Bounded>(&self, lobe: L) -> L::Bound {
+        let roulette = Roulette::new(self.delta).expect("in the domain");
+        let xi = Xi::new(self.xi).expect("in the domain");
+        let light = Vpl::new(self.position, self.flux, lobe).expect("in the domain");
+        light.bound(&roulette, xi)
+    }
+}
+
+fn fresnel(rng: &mut Rng) -> Fresnel {
+    let index = |rng: &mut Rng| match rng.u8(0..4) {
+        0 => 1.0 + log_uniform(rng, 1e-7, 1.0),
+        1 => 1.0 - log_uniform(rng, 1e-7, 0.9),
+        2 => log_uniform(rng, 1e-3, 1e3),
+        _ => 0.3 + 3.0 * rng.f64(),
+    };
+    match rng.u8(0..8) {
+        0 => Fresnel::Dielectric(index(rng) as f32),
+        1 => Fresnel::Conductor(index(rng) as f32, log_uniform(rng, 1e-4, 1e2) as f32),
+        2 => Fresnel::Schlick(rng.f32()),
+        3 => Fresnel::Schlick(0.0),
+        _ => Fresnel::None,
+    }
+}

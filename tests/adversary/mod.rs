@@ -1,0 +1,81 @@
+//! Points that a light reaches, exactly, and the thinnest tiles around them: drawn from the whole
+//! domain, most often from its edges.
+#![allow(dead_code, reason = "each user draws a part")]
+
+mod light;
+mod tile;
+
+pub use light::Light;
+pub use tile::Tile;
+
+use fastrand::Rng;
+use stochastic_light_culling::{CameraSphere, Direction, Sphere, Spheroid, Stretch, TileTest};
+
+use crate::reference::Vector;
+
+/// What the crate encloses a light's range by.
+#[derive(Clone, Copy, Debug)]
+pub enum Bound {
+    Spheroid(Spheroid),
+    Sphere(Sphere),
+}
+
+impl Bound {
+    /// The names of the bounds by which the light is not found to touch `tile`.
+    pub fn that_lose(&self, tile: &Tile) -> Vec<&'static str> {
+        let touches = |test: &dyn TileTest| test.touches(&tile.rectangle, &tile.depths);
+        let sphere = |sphere: Sphere| {
+            CameraSphere::new(&sphere, &tile.camera).is_some_and(|test| touches(&test))
+        };
+        let found = match *self {
+            Self::Sphere(bound) => vec![("sphere", sphere(bound))],
+            Self::Spheroid(bound) => {
+                let stretch = Stretch::new(&bound.into(), &tile.camera);
+                vec![
+                    ("spheroid", stretch.is_some_and(|test| touches(&test))),
+                    ("enclosing sphere", sphere(bound.enclosing_sphere())),
+                    ("sphere at the light", sphere(bound.sphere_at_focus())),
+                ]
+            }
+        };
+        let lost = found.into_iter().filter(|(_, touched)| !touched);
+        lost.map(|(name, _)| name).collect()
+    }
+}
+
+fn chance(rng: &mut Rng, share: f64) -> bool {
+    rng.f64() < share
+}
+
+pub fn log_uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
+    (low.ln() + rng.f64() * (high / low).ln()).exp()
+}
+
+/// Numbers in [low, 1], mostly over decades from both ends.
+fn up_to_one(rng: &mut Rng, low: f64) -> f64 {
+    match rng.u8(0..10) {
+        0 => 1.0,
+        1 => low,
+        2 => low + (1.0 - low) * rng.f64(),
+        3 | 4 => (1.0 - log_uniform(rng, 1e-8, 0.5)).max(low),
+        _ => log_uniform(rng, low, 1.0),
+    }
+}
+
+fn unit_vector(rng: &mut Rng) -> Vector {
+    if chance(rng, 0.1) {
+        let mut axis = [0.0; 3];
+        axis[rng.usize(0..3)] = if rng.bool() { 1.0 } else { -1.0 };
+        return Vector(axis);
+    }
+    loop {
+        let v = Vector(std::array::from_fn(|_| 2.0 * rng.f64() - 1.0));
+        if (0.01..1.0).contains(&v.length()) {
+            return v.unit();
+        }
+    }
+}
+
+fn direction(v: Vector) -> Direction {
+    Direction::new(v.to_f32()).expect("unit vectors have a direction")
+}

@@ -1,0 +1,42 @@
+//! No light is lost: over the whole domain of the crate, a tile with a point in it that a light
+//! reaches in exact arithmetic is touched, whichever bound the light is tested by.
+//!
+//! `CASES=100000000 cargo test --test extremes -- --nocapture` is the long run.
+
+mod adversary;
+mod reference;
+
+use adversary::{Light, Tile};
+use fastrand::Rng;
+use rayon::prelude::*;
+
+const TILES_PER_LIGHT: usize = 16;
+const BATCH: usize = 4096;
+
+#[test]
+fn no_light_is_lost() {
+    let wanted = std::env::var("CASES").map_or(1_000_000, |cases| cases.parse().expect("a number"));
+    let batch = |seed| {
+        let mut rng = Rng::with_seed(seed);
+        let mut tested = 0;
+        while tested < BATCH {
+            let light = Light::draw(&mut rng);
+            let bound = light.bound();
+            for _ in 0..TILES_PER_LIGHT {
+                let Some(tile) = Tile::draw(&mut rng, &light) else {
+                    continue;
+                };
+                let lost = bound.that_lose(&tile);
+                assert!(
+                    lost.is_empty(),
+                    "seed {seed}: {lost:?} of {light:?} in {tile:?}"
+                );
+                tested += 1;
+            }
+        }
+        tested
+    };
+    let batches = wanted / BATCH as u64 + 1;
+    let tested: usize = (0..batches).into_par_iter().map(batch).sum();
+    println!("{tested} cases, 0 lost");
+}

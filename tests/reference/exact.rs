@@ -1,0 +1,167 @@
+//! The same lobes in double-double arithmetic (about 31 digits), in which the rounding of the model
+//! cannot hide what is looked for.
+
+use std::ops::{Add, Mul, Sub};
+
+use stochastic_light_culling::glam::Vec3;
+use twofloat::TwoFloat as Real;
+use twofloat::consts::PI;
+
+use super::{Brdf, Fresnel, Masking, View};
+
+#[derive(Clone, Copy, Debug)]
+pub struct Exact(pub [Real; 3]);
+
+impl Exact {
+    pub fn dot(self, other: Self) -> Real {
+        self.0[0] * other.0[0] + self.0[1] * other.0[1] + self.0[2] * other.0[2]
+    }
+
+    pub fn cross(self, other: Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Self([b * z - c * y, c * x - a * z, a * y - b * x])
+    }
+
+    pub fn unit(self) -> Self {
+        self * (Real::from(1.0) / self.dot(self).sqrt())
+    }
+
+    /// `point` before the eye of `view`, with depth in the place of z.
+    pub fn before(self, view: &View) -> Self {
+        let m = view.from_world.to_cols_array().map(f64::from);
+        let row =
+            |i: usize| self.0[0] * m[i] + self.0[1] * m[4 + i] + self.0[2] * m[8 + i] + m[12 + i];
+        let forward = if view.left_handed { 1.0 } else { -1.0 };
+        Self([row(0), row(1), row(2) * forward])
+    }
+}
+
+impl From<Vec3> for Exact {
+    fn from(v: Vec3) -> Self {
+        Self(v.to_array().map(|x| Real::from(f64::from(x))))
+    }
+}
+
+impl Add for Exact {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+}
+
+impl Sub for Exact {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] - other.0[i]))
+    }
+}
+
+impl Mul<Real> for Exact {
+    type Output = Self;
+    fn mul(self, factor: Real) -> Self {
+        Self(self.0.map(|x| x * factor))
+    }
+}
+
+/// f·max(μ_o, 0) for unit directions.
+pub fn value(brdf: Brdf, normal: Exact, incoming: Exact, outgoing: Exact) -> Real {
+    let zero = Real::from(0.0);
+    let (mu, mu_o) = (normal.dot(incoming), normal.dot(outgoing));
+    match brdf {
+        Brdf::Constant => Real::from(0.25) / PI,
+        _ if mu_o <= zero => zero,
+        Brdf::Lambert { albedo } => mu_o * f64::from(albedo) / PI,
+        Brdf::Ggx { .. } if mu <= zero => zero,
+        Brdf::Ggx {
+            roughness,
+            fresnel,
+            masking,
+        } => {
+            let alpha = f64::from(roughness);
+            let alpha_squared = Real::new_mul(alpha, alpha);
+            let half = (incoming + outgoing).unit();
+            let cosine = half.dot(normal);
+            let across = half.cross(normal);
+            let spread = alpha_squared * cosine * cosine + across.dot(across);
+            let ndf = alpha_squared / (PI * spread * spread);
+            let root = |c: Real| ((Real::from(1.0) - alpha_squared) * c * c + alpha_squared).sqrt();
+            let (root_i, root_o) = (root(mu), root(mu_o));
+            let g2_over_4mu = match masking {
+                Masking::HeightCorrelated => mu_o * 0.5 / (mu_o * root_i + mu * root_o),
+                Masking::Separable => mu_o / ((mu + root_i) * (mu_o + root_o)),
+            };
+            reflectance(fresnel, incoming.dot(half)) * ndf * g2_over_4mu
+        }
+    }
+}
+
+/// F at the angle θ_h whose cosine is given.
+pub fn reflectance(fresnel: Fresnel, cosine: Real) -> Real {
+    let (zero, one) = (Real::from(0.0), Real::from(1.0));
+    let cosine = cosine.max(zero).min(one);
+    match fresnel {
+        Fresnel::None => one,
+        Fresnel::Schlick(f0) => {
+            let (f0, rest) = (Real::from(f64::from(f0)), one - cosine);
+            f0 + (one - f0) * (rest * rest * rest * rest * rest)
+        }
+        Fresnel::Dielectric(eta) => unpolarised(cosine, f64::from(eta), 0.0),
+        Fresnel::Conductor(eta, kappa) => unpolarised(cosine, f64::from(eta), f64::from(kappa)),
+    }
+}
+
+fn unpolarised(cosine: Real, eta: f64, kappa: f64) -> Real {
+    let squared = (
+        Real::new_mul(eta, eta) - Real::new_mul(kappa, kappa),
+        Real::new_mul(2.0 * eta, kappa),
+    );
+    let sine_squared = Real::from(1.0) - cosine * cosine;
+    let (a, b) = root((squared.0 - sine_squared, squared.1));
+    let ratio_squared = |(x, y): (Real, Real)| {
+        let of = |x: Real, y: Real| x * x + y * y;
+        of(x - a, y - b) / of(x + a, y + b)
+    };
+    let perpendicular = ratio_squared((cosine, Real::from(0.0)));
+    let parallel = ratio_squared((squared.0 * cosine, squared.1 * cosine));
+    (perpendicular + parallel) * 0.5
+}
+
+/// The root of a complex number in the first quadrant, neither part by cancellation.
+fn root((x, y): (Real, Real)) -> (Real, Real) {
+    let zero = Real::from(0.0);
+    let modulus = (x * x + y * y).sqrt();
+    let larger = ((modulus + if x < zero { -x } else { x }) * 0.5).sqrt();
+    if larger <= zero {
+        return (zero, zero);
+    }
+    let smaller = y * 0.5 / larger;
+    if x < zero {
+        (smaller, larger)
+    } else {
+        (larger, smaller)
+    }
+}
+
+/// The nearest `f32` at or below, and at or above.
+pub fn outward(x: Real) -> [f32; 2] {
+    let near = x.hi() as f32;
+    let exact = Real::from(f64::from(near));
+    if exact == x {
+        [near, near]
+    } else if exact < x {
+        [near, next_up(near)]
+    } else {
+        [-next_up(-near), near]
+    }
+}
+
+/// `f32::next_up`, which is newer than the crate's least Rust version.
+fn next_up(x: f32) -> f32 {
+    if x == 0.0 {
+        f32::from_bits(1)
+    } else if x > 0.0 {
+        f32::from_bits(x.to_bits() + 1)
+    } else {
+        f32::from_bits(x.to_bits() - 1)
+    }
+}
