@@ -125,6 +125,11 @@ impl Camera {
         Vec3::new(row(0) as f32, row(1) as f32, row(2) as f32)
     }
 
+    /// `point` of camera space in world space, to rounding; the eye is where the origin goes.
+    pub fn to_world_space(&self, point: Vec3) -> Vec3 {
+        self.rotation.transpose() * (point - self.translation)
+    }
+
     /// What [`to_camera_space`](Self::to_camera_space) can be off by before it rounds, in length: the
     /// rounding of `f64` in terms this large.
     pub(crate) fn rounding_of_terms(&self, point: Vec3) -> f32 {

@@ -27,6 +27,8 @@ proptest! {
         let seen = Vector::from(camera.to_camera_space(point.to_f32()));
         let magnitude = distance + f64::from(view.from_world.w_axis.truncate().length());
         prop_assert!((seen - exact).length() < 1e-6 * magnitude);
+        let back = Vector::from(camera.to_world_space(seen.to_f32()));
+        prop_assert!((back - Vector::from(point.to_f32())).length() < 2e-6 * magnitude);
 
         // The corners of a pixel, taken to depth 5, project back onto its edges.
         let (x, y) = pixel;

@@ -121,7 +121,7 @@ impl Scene {
     /// The point of the floor that a pixel sees, in the world.
     fn point(&self, pixel: [u32; 2]) -> Vec3 {
         let seen = self.camera.point_in_pixel(IMAGE, pixel, self.depth(pixel));
-        self.camera.rotation().transpose() * (seen - self.camera.to_camera_space(Vec3::ZERO))
+        self.camera.to_world_space(seen)
     }
 
     /// The intensity that a light sends to `point`, and its squared distance.

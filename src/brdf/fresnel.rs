@@ -52,6 +52,11 @@ impl Schlick {
     pub fn new(f0: f32) -> Result<Self, Error> {
         error::number_in("reflectance F0", f0, "in [0, 1]", 0.0..=1.0).map(|f0| Self { f0 })
     }
+
+    /// F0, the reflectance at normal incidence.
+    pub fn f0(&self) -> f32 {
+        self.f0
+    }
 }
 
 impl Fresnel for Schlick {

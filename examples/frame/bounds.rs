@@ -1,0 +1,88 @@
+//! Bounds of the lights' ranges, made ready for the tile test.
+
+use clap::ValueEnum;
+use rayon::prelude::*;
+use stochastic_light_culling::{
+    Camera, CameraSphere, GgxLobe, Interleave, LambertLobe, Roulette, Schlick, Spheroid, Stretch,
+};
+
+use super::Light;
+
+pub type GlossyLight = Light<GgxLobe<Schlick>>;
+
+/// What encloses a glossy light's range.
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd, ValueEnum)]
+pub enum BoundKind {
+    /// The sphere around the light itself
+    Sphere,
+    /// The sphere around the spheroid
+    Enclosing,
+    /// The spheroid
+    Spheroid,
+}
+
+impl BoundKind {
+    pub const ALL: [Self; 3] = [Self::Sphere, Self::Enclosing, Self::Spheroid];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sphere => "sphere",
+            Self::Enclosing => "enclosing",
+            Self::Spheroid => "spheroid",
+        }
+    }
+}
+
+/// The numbers of a subregion's lights, in rising order, with what they are tested by; those that
+/// reach nowhere are left out.
+pub type Candidates<T> = Vec<(u32, T)>;
+
+pub fn spheroid(light: &GlossyLight, roulette: &Roulette, camera: &Camera) -> Option<Stretch> {
+    Stretch::new(&range(light, roulette).into(), camera)
+}
+
+pub fn enclosing_sphere(
+    light: &GlossyLight,
+    roulette: &Roulette,
+    camera: &Camera,
+) -> Option<CameraSphere> {
+    CameraSphere::new(&range(light, roulette).enclosing_sphere(), camera)
+}
+
+pub fn sphere_at_light(
+    light: &GlossyLight,
+    roulette: &Roulette,
+    camera: &Camera,
+) -> Option<CameraSphere> {
+    CameraSphere::new(&range(light, roulette).sphere_at_focus(), camera)
+}
+
+pub fn diffuse_sphere(
+    light: &Light<LambertLobe>,
+    roulette: &Roulette,
+    camera: &Camera,
+) -> Option<CameraSphere> {
+    CameraSphere::new(&light.vpl.bound(roulette, light.xi), camera)
+}
+
+fn range(light: &GlossyLight, roulette: &Roulette) -> Spheroid {
+    light.vpl.bound(roulette, light.xi)
+}
+
+/// The candidates of each subregion.
+pub fn candidates<L: Sync, T: Send>(
+    lights: &[Light<L>],
+    interleave: &Interleave,
+    test: impl Fn(&Light<L>) -> Option<T> + Sync,
+) -> Vec<Candidates<T>> {
+    let count = lights.len() as u32;
+    (0..interleave.subregions())
+        .into_par_iter()
+        .map(|subregion| {
+            (0..interleave.lights_in(subregion, count))
+                .map(|local| interleave.join_light(subregion, local))
+                .filter_map(|number| Some((number, test(&lights[number as usize])?)))
+                .collect()
+        })
+        .collect()
+}

@@ -1,0 +1,133 @@
+//! Irradiance of each pixel from the lights in its tile's list.
+
+use rayon::prelude::*;
+use stochastic_light_culling::{Lobe, glam::Vec3};
+
+use super::cull::TileLights;
+use super::{Frame, Light, Tile};
+use crate::scene::Surface;
+
+/// For each pixel of an image, row by row: irradiance, the lights whose lobe was evaluated, and those
+/// of them that were accepted.
+#[derive(Clone, Debug)]
+pub struct Shaded {
+    pub irradiance: Vec<Vec3>,
+    pub evaluated: Vec<u32>,
+    pub contributing: Vec<u32>,
+}
+
+impl Shaded {
+    /// At how many pixels the irradiance or the lights accepted differ in any bit.
+    pub fn pixels_unlike(&self, other: &Self) -> usize {
+        let bits = |irradiance: &Vec3| irradiance.to_array().map(f32::to_bits);
+        let irradiance = self.irradiance.iter().zip(&other.irradiance);
+        let contributing = self.contributing.iter().zip(&other.contributing);
+        irradiance
+            .zip(contributing)
+            .filter(|((a, b), (m, n))| bits(a) != bits(b) || m != n)
+            .count()
+    }
+}
+
+/// One pixel's sums.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    irradiance: Vec3,
+    evaluated: u32,
+    contributing: u32,
+}
+
+/// Shades all pixels of the frame's tiles by `lists`; calls `done` after each tile.
+pub fn shade<L: Lobe + Sync>(
+    frame: &Frame,
+    lights: &[Light<L>],
+    lists: &[TileLights],
+    done: impl Fn() + Sync,
+) -> Shaded {
+    let shade_tile = |(tile, lists): (&Tile, &TileLights)| {
+        let sums = |pixel: &[u32; 2]| {
+            let surface = frame.surfaces.at(*pixel);
+            if surface.is_sky() {
+                return Sums::default();
+            }
+            shade_pixel(
+                frame,
+                lights,
+                &lists[tile.interval_of(surface.depth)],
+                surface,
+            )
+        };
+        let sums: Vec<Sums> = tile.pixels.iter().map(sums).collect();
+        done();
+        sums
+    };
+    let by_tile: Vec<Vec<Sums>> = frame.tiles.par_iter().zip(lists).map(shade_tile).collect();
+
+    let count = frame.surfaces.surfaces.len();
+    let mut shaded = Shaded {
+        irradiance: vec![Vec3::ZERO; count],
+        evaluated: vec![0; count],
+        contributing: vec![0; count],
+    };
+    for (tile, sums) in frame.tiles.iter().zip(by_tile) {
+        for (pixel, sums) in tile.pixels.iter().zip(sums) {
+            let index = frame.surfaces.index(*pixel);
+            shaded.irradiance[index] = sums.irradiance;
+            shaded.evaluated[index] = sums.evaluated;
+            shaded.contributing[index] = sums.contributing;
+        }
+    }
+    shaded
+}
+
+/// In the order of the list, which is the same for every bound: the sums are then the same too.
+fn shade_pixel<L: Lobe>(
+    frame: &Frame,
+    lights: &[Light<L>],
+    list: &[u32],
+    surface: &Surface,
+) -> Sums {
+    let mut sums = Sums {
+        evaluated: list.len() as u32,
+        ..Sums::default()
+    };
+    for number in list {
+        let light = &lights[*number as usize];
+        let path = Path::new(light, surface, frame.least_distance_squared);
+        let (roulette, xi) = (&frame.roulette, light.xi);
+        if roulette.accepts(path.intensity, path.distance_squared, xi) {
+            let weight = roulette.weight(path.intensity, path.distance_squared, xi);
+            sums.contributing += 1;
+            sums.irradiance += weight * path.irradiance() * light.tint;
+        }
+    }
+    sums
+}
+
+/// The way from a light to a surface.
+pub struct Path {
+    pub intensity: f32,
+    pub distance_squared: f32,
+    /// Of the angle of arrival; zero from behind.
+    pub cosine: f32,
+}
+
+impl Path {
+    #[inline]
+    pub fn new<L: Lobe>(light: &Light<L>, surface: &Surface, least_distance_squared: f32) -> Self {
+        let to_surface = surface.position - light.vpl.position();
+        let true_distance_squared = to_surface.length_squared();
+        // Of no length where the two coincide: no direction, hence no light.
+        let direction = to_surface / true_distance_squared.sqrt().max(f32::MIN_POSITIVE);
+        Self {
+            intensity: light.vpl.radiant_intensity(direction),
+            distance_squared: true_distance_squared.max(least_distance_squared),
+            cosine: (-direction).dot(surface.normal).max(0.0),
+        }
+    }
+
+    #[inline]
+    pub fn irradiance(&self) -> f32 {
+        self.intensity / self.distance_squared * self.cosine
+    }
+}

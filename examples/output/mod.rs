@@ -1,0 +1,49 @@
+//! What a run leaves behind: pictures, a table, JSON; and its progress meanwhile.
+
+mod heat_map;
+mod json;
+mod picture;
+mod progress;
+mod table;
+
+pub use heat_map::heat_map;
+pub use json::json;
+pub use picture::{Exposure, tone_mapped, write_png};
+pub use progress::progress;
+pub use table::table;
+
+/// What one bound came to.
+pub struct Row {
+    pub bound: &'static str,
+    pub lights_per_pixel: f64,
+    pub contributing_per_pixel: f64,
+    pub cull_ms: f64,
+    pub shade_ms: f64,
+    /// None without a reference.
+    pub rmse: Option<f64>,
+}
+
+impl Row {
+    pub fn false_positives_per_pixel(&self) -> f64 {
+        self.lights_per_pixel - self.contributing_per_pixel
+    }
+}
+
+/// What a run was asked for.
+pub struct Request<'a> {
+    pub scene: &'a str,
+    pub alpha: f32,
+    pub f0: f32,
+    pub vpls: u32,
+    pub delta: f32,
+    pub size: [u32; 2],
+    pub seed: u32,
+}
+
+/// What came of it.
+pub struct Results {
+    pub glossy: Vec<Row>,
+    pub diffuse: Row,
+    /// The time of each step that is not in a row, in ms, in order.
+    pub steps: Vec<(String, f64)>,
+}

@@ -1,0 +1,276 @@
+//! The main example: a glossy caustic by stochastic light culling, as pictures and a table.
+//!
+//! ```text
+//! cargo run --release --example render -- --help
+//! ```
+//!
+//! direct light → lit points → lights with their ranges → lists for tiles → shading → denoising,
+//! once with each bound, and all lights at once for reference.
+
+#[path = "render/arguments.rs"]
+mod arguments;
+mod frame;
+mod output;
+mod scene;
+
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+use std::{fs, io};
+
+use stochastic_light_culling::{Camera, Error, Interleave, TileGrid, glam::Vec3};
+
+use arguments::{Arguments, ReferenceKind};
+use frame::{Frame, Lights, Measured, Reference, Tile, timed};
+use output::{Exposure, Request, Results, Row, progress};
+use scene::{LitPoints, Scene, SurfaceBuffer, Tracer};
+
+fn main() -> ExitCode {
+    let outcome = Arguments::read().and_then(|arguments| match arguments {
+        Some(arguments) => render(&arguments),
+        None => Ok(()),
+    });
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => {
+            eprintln!("error: {reason}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// The whole corridor. Whatever can be refused is, before anything is written.
+fn render(arguments: &Arguments) -> Result<(), String> {
+    let said = |error: Error| error.to_string();
+    let interleave = Interleave::new(arguments.size, arguments.interleave).map_err(said)?;
+    TileGrid::new(arguments.size, arguments.tile).map_err(said)?;
+    let scene = Scene::load(&arguments.scene, &arguments.glossy)?;
+    let camera = scene.viewpoint.camera(arguments.size).map_err(said)?;
+    make_folder(&arguments.out)?;
+
+    let tracer = Tracer::new(&scene.mesh);
+    let (surfaces, surfaces_ms) = timed(|| SurfaceBuffer::new(&tracer, &camera, arguments.size));
+    let (points, points_ms) = timed(|| {
+        let photons = scene::trace_photons(&tracer, &scene.spot, arguments.vpls, arguments.seed);
+        LitPoints::new(
+            &photons,
+            &scene.mesh.materials,
+            arguments.alpha,
+            arguments.f0,
+        )
+    });
+    let points = points.map_err(said)?;
+    let lights = Lights::new(&points, &interleave, arguments.seed).map_err(said)?;
+    let tiles = Tile::all(&surfaces, &camera, &interleave, arguments.tile).map_err(said)?;
+    let frame = Frame {
+        surfaces: &surfaces,
+        tiles: &tiles,
+        interleave,
+        roulette: arguments.delta,
+        least_distance_squared: 4.0 * points.footprint,
+    };
+
+    let (glossy, diffuse) = measure(arguments, &frame, &camera, &lights)?;
+    let mut steps = vec![("G-buffer".into(), surfaces_ms), ("VPLs".into(), points_ms)];
+    let bounds = glossy
+        .iter()
+        .map(|m| (format!("bound {}", m.bound.name()), m.bound_ms));
+    steps.extend(bounds);
+    steps.push(("bound diffuse".into(), diffuse.bound_ms));
+
+    let (images, denoise_ms) = timed(|| denoised(arguments, &frame, &glossy, &diffuse));
+    steps.push(("denoise".into(), denoise_ms));
+    let (reference, reference_ms) = timed(|| reference(arguments, &frame, &lights));
+    if reference.is_some() {
+        steps.push(("reference".into(), reference_ms));
+    }
+
+    write_pictures(arguments, &frame, &images, &glossy, reference.as_ref())?;
+    let [glossy_image, diffuse_image] = &images;
+    let error = |image: &[Vec3], of: fn(&Reference) -> &[Vec3]| {
+        let reference = reference.as_ref()?;
+        Some(frame::rmse(
+            &surfaces,
+            image,
+            &reference.pixels,
+            of(reference),
+        ))
+    };
+    let glossy_error = error(glossy_image, |reference| &reference.glossy);
+    let diffuse_error = error(diffuse_image, |reference| &reference.diffuse);
+    let rows = glossy
+        .iter()
+        .map(|measured| row(&surfaces, measured, glossy_error));
+    let results = Results {
+        glossy: rows.collect(),
+        diffuse: row(&surfaces, &diffuse, diffuse_error),
+        steps,
+    };
+    match report(arguments, &results) {
+        // Whoever reads has read enough.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        outcome => outcome.map_err(|error| format!("cannot report: {error}")),
+    }
+}
+
+/// Makes sure that pictures can be written to `folder`.
+fn make_folder(folder: &Path) -> Result<(), String> {
+    let probe = folder.join(format!(".probe.{}.part", std::process::id()));
+    fs::create_dir_all(folder)
+        .and_then(|()| fs::write(&probe, []))
+        .and_then(|()| fs::remove_file(&probe))
+        .map_err(|error| format!("cannot write to {}: {error}", folder.display()))
+}
+
+/// The frame by its glossy lights, with each bound asked for, and by its diffuse lights.
+fn measure(
+    arguments: &Arguments,
+    frame: &Frame,
+    camera: &Camera,
+    lights: &Lights,
+) -> Result<(Vec<Measured>, Measured), String> {
+    let bounds = arguments.bounds();
+    let bar = progress("shading", frame.tiles.len() * (bounds.len() + 1));
+    let done = || bar.inc(1);
+    let glossy: Vec<Measured> = bounds
+        .into_iter()
+        .map(|bound| frame::measure_glossy(frame, camera, &lights.glossy, bound, done))
+        .collect();
+    let diffuse = frame::measure_diffuse(frame, camera, &lights.diffuse, done);
+    bar.finish_and_clear();
+
+    // Which lights are accepted does not depend on what encloses them, or a bound has lost one.
+    for measured in &glossy[1..] {
+        let unlike = measured.shaded.pixels_unlike(&glossy[0].shaded);
+        if unlike > 0 {
+            let [a, b] = [&glossy[0], measured].map(|measured| measured.bound.name());
+            return Err(format!(
+                "bounds {a} and {b} light {unlike} pixels differently"
+            ));
+        }
+    }
+    Ok((glossy, diffuse))
+}
+
+/// The irradiance of glossy and of diffuse lights, without noise if possible.
+fn denoised(
+    arguments: &Arguments,
+    frame: &Frame,
+    glossy: &[Measured],
+    diffuse: &Measured,
+) -> [Vec<Vec3>; 2] {
+    let noisy = [&glossy[0], diffuse].map(|measured| &*measured.shaded.irradiance);
+    if arguments.no_denoise {
+        return noisy.map(<[Vec3]>::to_vec);
+    }
+    let bar = progress("denoising", arguments.size[1] as usize);
+    let images = frame::cross_bilateral(frame.surfaces, noisy, || bar.inc(1));
+    bar.finish_and_clear();
+    images
+}
+
+/// The reference of the kind asked for, or of that which can be afforded.
+fn reference(arguments: &Arguments, frame: &Frame, lights: &Lights) -> Option<Reference> {
+    /// How many lights at how many pixels: half a minute on two cores.
+    const BUDGET: f64 = 6e9;
+    let all_lights = (lights.glossy.len() + lights.diffuse.len()) as f64;
+    let work = frame.surfaces.surfaces.len() as f64 * all_lights;
+    let kind = arguments.reference.unwrap_or(if work <= BUDGET {
+        ReferenceKind::Full
+    } else {
+        ReferenceKind::Sampled
+    });
+    let stride = match kind {
+        ReferenceKind::Off => return None,
+        ReferenceKind::Full => 1,
+        ReferenceKind::Sampled => {
+            sampling_stride((8.0 * work / BUDGET).sqrt(), arguments.interleave)
+        }
+    };
+    let bar = progress("reference", Reference::pixels(frame, stride).len());
+    let reference = Reference::new(frame, lights, stride, || bar.inc(1));
+    bar.finish_and_clear();
+    Some(reference)
+}
+
+/// The least stride from `least` that meets pixels of all subregions alike.
+fn sampling_stride(least: f64, interleave: u32) -> usize {
+    fn common_divisor(a: usize, b: usize) -> usize {
+        if b == 0 { a } else { common_divisor(b, a % b) }
+    }
+    let mut stride = (least.ceil() as usize).max(2);
+    while common_divisor(stride, interleave as usize) > 1 {
+        stride += 1;
+    }
+    stride
+}
+
+fn write_pictures(
+    arguments: &Arguments,
+    frame: &Frame,
+    [glossy_image, diffuse_image]: &[Vec<Vec3>; 2],
+    glossy: &[Measured],
+    reference: Option<&Reference>,
+) -> Result<(), String> {
+    let surfaces = &frame.surfaces.surfaces;
+    let radiance = |glossy: &[Vec3], diffuse: &[Vec3]| -> Vec<Vec3> {
+        let both = glossy.iter().zip(diffuse);
+        let seen = surfaces.iter().zip(both);
+        seen.map(|(surface, (glossy, diffuse))| surface.reflected(glossy + diffuse))
+            .collect()
+    };
+    let (folder, size) = (&*arguments.out, arguments.size);
+    let image = radiance(glossy_image, diffuse_image);
+    let exposure = Exposure::of(&image);
+    output::write_png(
+        folder,
+        "indirect.png",
+        &output::tone_mapped(size, &image, exposure),
+    )?;
+    for measured in glossy {
+        let name = format!("lights-{}.png", measured.bound.name());
+        let map = output::heat_map(size, &measured.shaded.evaluated);
+        output::write_png(folder, &name, &map)?;
+    }
+    if let Some([glossy, diffuse]) =
+        reference.and_then(|reference| reference.images(surfaces.len()))
+    {
+        let image = radiance(&glossy, &diffuse);
+        let picture = output::tone_mapped(size, &image, exposure);
+        output::write_png(folder, "reference.png", &picture)?;
+    }
+    Ok(())
+}
+
+fn row(surfaces: &SurfaceBuffer, measured: &Measured, rmse: Option<f64>) -> Row {
+    let shaded = &measured.shaded;
+    Row {
+        bound: measured.bound.name(),
+        lights_per_pixel: frame::mean_over_surfaces(surfaces, &shaded.evaluated),
+        contributing_per_pixel: frame::mean_over_surfaces(surfaces, &shaded.contributing),
+        cull_ms: measured.cull_ms,
+        shade_ms: measured.shade_ms,
+        rmse,
+    }
+}
+
+/// The table on standard output, or on standard error with JSON on standard output.
+fn report(arguments: &Arguments, results: &Results) -> io::Result<()> {
+    let request = Request {
+        scene: &arguments.scene,
+        alpha: arguments.alpha.roughness(),
+        f0: arguments.f0.f0(),
+        vpls: arguments.vpls,
+        delta: arguments.delta.delta(),
+        size: arguments.size,
+        seed: arguments.seed,
+    };
+    let table = output::table(&request, results);
+    if arguments.json {
+        writeln!(io::stderr(), "{table}")?;
+        writeln!(io::stdout(), "{}", output::json(&request, results))
+    } else {
+        writeln!(io::stdout(), "{table}")?;
+        writeln!(io::stdout(), "\npictures: {}", arguments.out.display())
+    }
+}

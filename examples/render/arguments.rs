@@ -1,0 +1,151 @@
+//! The command line.
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::{Parser, ValueEnum, error::ErrorKind};
+use stochastic_light_culling::{Ggx, Roulette, Schlick};
+
+use crate::frame::BoundKind;
+
+/// Renders a glossy caustic by stochastic light culling, and measures what each bound costs.
+#[derive(Debug, Parser)]
+#[command(name = "render", version)]
+pub struct Arguments {
+    /// What to render: ring, cornell, or a file (.obj, .glb, .gltf)
+    #[arg(long, default_value = "ring")]
+    pub scene: String,
+
+    /// A material of the file that reflects as GGX; can be given more than once [default: those
+    /// with a specular colour; of a file without materials, everything]
+    #[arg(long, value_name = "NAME")]
+    pub glossy: Vec<String>,
+
+    /// Roughness α of glossy surfaces, in (0, 1]
+    #[arg(long, default_value = "0.1", value_parser = ggx)]
+    pub alpha: Ggx,
+
+    /// Their reflectance F0 at normal incidence, in [0, 1]
+    #[arg(long, default_value = "0.9", value_parser = schlick)]
+    pub f0: Schlick,
+
+    /// Rays from the light; each hit makes a virtual point light
+    #[arg(long, default_value_t = 16384, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    pub vpls: u32,
+
+    /// Variance parameter δ: less is less noise and more work
+    #[arg(long, default_value = "0.001", value_parser = roulette)]
+    pub delta: Roulette,
+
+    /// What encloses a light's range; can be given more than once [default: all, one after another]
+    #[arg(long)]
+    pub bound: Vec<BoundKind>,
+
+    /// Width and height of the picture
+    #[arg(long, default_value = "640x360", value_name = "WxH", value_parser = size)]
+    pub size: [u32; 2],
+
+    /// Which random numbers to use
+    #[arg(long, default_value_t = 1)]
+    pub seed: u32,
+
+    /// The folder that the pictures go to
+    #[arg(long, default_value = "target/render", value_name = "DIR")]
+    pub out: PathBuf,
+
+    /// Print one JSON object to standard output, and the table to standard error
+    #[arg(long)]
+    pub json: bool,
+
+    /// Width w of interleaved sampling: each pixel is lit by 1/w² of the lights
+    #[arg(long, default_value_t = 4, value_name = "W")]
+    pub interleave: u32,
+
+    /// Width of a tile in pixels
+    #[arg(long, default_value_t = 16, value_name = "N")]
+    pub tile: u32,
+
+    /// Leave the noise in
+    #[arg(long)]
+    pub no_denoise: bool,
+
+    /// The picture of all lights, to measure the error by [default: full if that is quick, else
+    /// sampled]
+    #[arg(long)]
+    pub reference: Option<ReferenceKind>,
+}
+
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum ReferenceKind {
+    /// At every pixel
+    Full,
+    /// At pixels on a coarse grid
+    Sampled,
+    /// Not at all
+    Off,
+}
+
+impl Arguments {
+    /// The arguments of this process; `Ok(None)` if help was asked for, and has been given.
+    pub fn read() -> Result<Option<Self>, String> {
+        match Self::try_parse() {
+            Ok(arguments) => Ok(Some(arguments)),
+            Err(error) => match error.kind() {
+                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+                    error.print().map_err(|error| error.to_string())?;
+                    Ok(None)
+                }
+                _ => Err(first_paragraph(&error)),
+            },
+        }
+    }
+
+    /// The bounds to measure, each once, from the loosest to the tightest.
+    pub fn bounds(&self) -> Vec<BoundKind> {
+        let mut bounds = if self.bound.is_empty() {
+            BoundKind::ALL.to_vec()
+        } else {
+            self.bound.clone()
+        };
+        bounds.sort_unstable();
+        bounds.dedup();
+        bounds
+    }
+}
+
+/// What went wrong, without the usage after it, on one line.
+fn first_paragraph(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let lines: Vec<&str> = text.lines().map(str::trim).collect();
+    let paragraph = lines.split(|line| line.is_empty()).next().unwrap_or(&[]);
+    paragraph.join(" ").replacen("error: ", "", 1)
+}
+
+type Refusal = Box<dyn Error + Send + Sync>;
+
+fn ggx(text: &str) -> Result<Ggx, Refusal> {
+    Ok(Ggx::new(text.parse()?)?)
+}
+
+fn schlick(text: &str) -> Result<Schlick, Refusal> {
+    Ok(Schlick::new(text.parse()?)?)
+}
+
+fn roulette(text: &str) -> Result<Roulette, Refusal> {
+    Ok(Roulette::new(text.parse()?)?)
+}
+
+fn size(text: &str) -> Result<[u32; 2], Refusal> {
+    const LARGEST: u32 = 16384;
+    let valid = "must be width x height, such as 640x360, each from 1 to 16384";
+    let (width, height) = text.split_once('x').ok_or(valid)?;
+    let size = [
+        width.parse().map_err(|_| valid)?,
+        height.parse().map_err(|_| valid)?,
+    ];
+    if size.iter().all(|side| (1..=LARGEST).contains(side)) {
+        Ok(size)
+    } else {
+        Err(valid.into())
+    }
+}

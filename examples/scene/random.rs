@@ -1,0 +1,18 @@
+//! Random numbers without state: each is a hash of what it is for.
+
+use stochastic_light_culling::Xi;
+
+/// What a number is drawn for. The library's own ξ take the hash's second word to be a frame number;
+/// these come from frames that no picture will reach.
+#[derive(Clone, Copy, Debug)]
+#[repr(u32)]
+pub enum Purpose {
+    JitterX = 0xffff_fff0,
+    JitterY,
+    Shuffle,
+}
+
+/// A number in (0, 1] for the thing `index`.
+pub fn uniform(index: u32, purpose: Purpose, seed: u32) -> f32 {
+    Xi::hashed(index, purpose as u32, seed).get()
+}

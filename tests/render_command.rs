@@ -1,0 +1,330 @@
+//! The example `render` as a command: what it refuses, and what it leaves behind.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// Runs the example that `cargo test` has built beside this test's own executable. With `--test`
+/// cargo leaves it out, and it must be built before: `cargo build --profile test --example render`.
+fn render<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Output {
+    let test = std::env::current_exe().expect("a test knows where it is");
+    let profile = test.ancestors().nth(2).expect("tests lie in deps/");
+    let name = format!("render{}", std::env::consts::EXE_SUFFIX);
+    Command::new(profile.join("examples").join(name))
+        .args(arguments)
+        .output()
+        .expect("first run `cargo build --profile test --example render`, or all of `cargo test`")
+}
+
+/// A path for this test alone, with nothing there.
+fn fresh_path(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("render_command")
+        .join(name);
+    if path.exists() {
+        fs::remove_dir_all(&path).expect("leftovers can be removed");
+    }
+    path
+}
+
+fn fresh_folder(name: &str) -> PathBuf {
+    let folder = fresh_path(name);
+    fs::create_dir_all(&folder).expect("a folder can be made");
+    folder
+}
+
+/// Asserts that `arguments` are refused with status 2 and one line that contains `reason`, and that
+/// nothing is written.
+#[track_caller]
+fn assert_refused(test: &str, arguments: &[&str], reason: &str) {
+    let out = fresh_path(test);
+    let where_to = [OsStr::new("--out"), out.as_os_str()];
+    let output = render(arguments.iter().map(OsStr::new).chain(where_to));
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
+    assert_eq!(error.lines().count(), 1, "{arguments:?}: {error}");
+    assert!(error.starts_with("error: "), "{arguments:?}: {error}");
+    assert!(error.contains(reason), "{arguments:?}: {error}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert!(!out.exists(), "{arguments:?} wrote to {}", out.display());
+}
+
+#[test]
+fn refuses_values_outside_their_range() {
+    for (arguments, reason) in [
+        (["--alpha", "0"], "roughness α is 0"),
+        (["--alpha", "NaN"], "roughness α is NaN"),
+        (["--alpha", "rough"], "'rough'"),
+        (["--f0", "1.5"], "F0 is 1.5"),
+        (["--f0", "-0.1"], "-0.1"),
+        (["--delta", "0"], "δ is 0"),
+        (["--delta", "inf"], "δ is inf"),
+        (["--vpls", "0"], "'0'"),
+        (["--size", "0x0"], "'0x0'"),
+        (["--size", "640"], "'640'"),
+        (["--size", "-1x5"], "-1x5"),
+        (["--size", "99999x99999"], "'99999x99999'"),
+        (["--size", "16384x32"], "aspect ratio is 512"),
+        (["--tile", "0"], "tile size is 0×0"),
+        (["--interleave", "0"], "interleaving width is 0×0"),
+        (["--interleave", "361"], "interleaving width is 361×361"),
+        (["--bound", "cube"], "'cube'"),
+        (["--reference", "half"], "'half'"),
+        (["--seed", "-1"], "-1"),
+        (["--colour", "red"], "--colour"),
+        (["--glossy", "Gold"], "Gold"),
+    ] {
+        // `=`, so that a negative number is not taken for an option.
+        assert_refused("ranges", &[&arguments.join("=")], reason);
+    }
+}
+
+#[test]
+fn refuses_files_that_are_no_scene() {
+    let folder = fresh_folder("scenes");
+    let corner = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (name, text, reason) in [
+        ("empty.obj", String::new(), "no triangles"),
+        ("points.obj", corner.into(), "no triangles"),
+        (
+            "line.obj",
+            "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n".into(),
+            "no triangles",
+        ),
+        (
+            "nan.obj",
+            corner.replace("1 0 0", "nan 0 0") + "f 1 2 3\n",
+            "NaN",
+        ),
+        (
+            "infinite.obj",
+            corner.replace("1 0 0", "1e99 0 0") + "f 1 2 3\n",
+            "inf",
+        ),
+        (
+            "far.obj",
+            corner.replace("1 0 0", "1e30 0 0") + "f 1 2 3\n",
+            "10⁹",
+        ),
+        ("beyond.obj", corner.to_owned() + "f 1 2 9\n", "beyond.obj"),
+        (
+            "before.obj",
+            corner.to_owned() + "f -1 -2 -9\n",
+            "before.obj",
+        ),
+        ("zeroth.obj", corner.to_owned() + "f 0 1 2\n", "zeroth.obj"),
+        ("words.obj", "v one two three\n".into(), "words.obj"),
+        (
+            "binary.obj",
+            "\u{0}\u{1}\u{2}v\u{7f}\u{0}".into(),
+            "binary.obj",
+        ),
+        ("empty.glb", String::new(), "empty.glb"),
+        (
+            "broken.glb",
+            "glTF\u{2}\u{0}\u{0}\u{0}".into(),
+            "broken.glb",
+        ),
+        (
+            "broken.gltf",
+            "{\"asset\": {\"version\": ".into(),
+            "broken.gltf",
+        ),
+        (
+            "bare.gltf",
+            r#"{"asset": {"version": "2.0"}}"#.into(),
+            "no scene",
+        ),
+        ("short.gltf", gltf(4, 36), "short.gltf"),
+        ("long.gltf", gltf(3, 37), "long.gltf"),
+        ("none.gltf", gltf(0, 36), "none.gltf"),
+        ("picture.png", corner.into(), "picture.png"),
+    ] {
+        let path = folder.join(name);
+        fs::write(&path, text).expect("a file can be written");
+        let path = path.to_str().expect("the path is UTF-8");
+        assert_refused("no_scene", &["--scene", path], reason);
+    }
+    let folder = folder.to_str().expect("the path is UTF-8");
+    assert_refused("no_scene", &["--scene", folder], folder);
+    assert_refused("no_scene", &["--scene", "no/such.obj"], "no/such.obj");
+}
+
+#[test]
+fn refuses_a_folder_that_is_a_file() {
+    let folder = fresh_folder("taken");
+    let file = folder.join("file");
+    fs::write(&file, "here first").expect("a file can be written");
+    let file_name = file.to_str().expect("the path is UTF-8");
+    for out in [file_name, &format!("{file_name}/below")] {
+        let output = render(["--vpls", "64", "--size", "32x24", "--out", out]);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert_eq!(error.lines().count(), 1, "{error}");
+        assert!(error.contains(file_name), "{error}");
+    }
+    assert_eq!(fs::read(&file).expect("still there"), b"here first");
+}
+
+#[test]
+fn helps() {
+    let output = render(["--help"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("--scene"));
+}
+
+/// A glTF file of one triangle whose accessor claims `count` vertices in a view of `length` bytes.
+fn gltf(count: u64, length: u64) -> String {
+    let bytes = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    serde_json::json!({
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0, "translation": [0.0, 1.0, 0.0]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{
+            "bufferView": 0, "componentType": 5126, "count": count, "type": "VEC3",
+            "min": [0.0, 0.0, 0.0], "max": [1.0, 1.0, 0.0],
+        }],
+        "bufferViews": [{"buffer": 0, "byteLength": length}],
+        "buffers": [{
+            "byteLength": 36,
+            "uri": format!("data:application/octet-stream;base64,{bytes}"),
+        }],
+    })
+    .to_string()
+}
+
+/// The same triangle as binary glTF: a header, a chunk of JSON and a chunk of bytes.
+fn glb() -> Vec<u8> {
+    let mut json: Value = serde_json::from_str(&gltf(3, 36)).expect("it is JSON");
+    json["buffers"] = serde_json::json!([{"byteLength": 36}]);
+    let mut text = json.to_string().into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let vertices = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let bytes: Vec<u8> = vertices.into_iter().flat_map(f32::to_le_bytes).collect();
+    let size = |bytes: &[u8]| (bytes.len() as u32).to_le_bytes();
+    let chunks = [
+        &size(&text),
+        b"JSON".as_slice(),
+        &text,
+        &size(&bytes),
+        b"BIN\0",
+        &bytes,
+    ]
+    .concat();
+    let total = (12 + chunks.len() as u32).to_le_bytes();
+    [b"glTF", &2_u32.to_le_bytes(), &total, &*chunks].concat()
+}
+
+fn number(row: &Value, name: &str) -> f64 {
+    row[name]
+        .as_f64()
+        .unwrap_or_else(|| panic!("{name} in {row}"))
+}
+
+/// The JSON and the names of the pictures of a small run.
+fn small_run(test: &str, more: &[&str]) -> (Value, Vec<String>) {
+    let out = fresh_path(test);
+    let arguments = ["--size", "64x48", "--vpls", "256", "--json", "--out"];
+    let arguments = arguments.iter().map(OsStr::new).chain([out.as_os_str()]);
+    let output = render(arguments.chain(more.iter().map(OsStr::new)));
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{error}");
+    let pictures = fs::read_dir(&out).expect("the folder was made");
+    let mut pictures: Vec<String> = pictures
+        .map(|entry| {
+            entry
+                .expect("readable")
+                .file_name()
+                .to_string_lossy()
+                .into()
+        })
+        .collect();
+    pictures.sort_unstable();
+    for picture in &pictures {
+        image::open(out.join(picture)).unwrap_or_else(|error| panic!("{picture}: {error}"));
+    }
+    let json = serde_json::from_slice(&output.stdout);
+    (json.expect("standard output is one JSON object"), pictures)
+}
+
+#[test]
+fn measures_every_bound() {
+    let (json, pictures) = small_run("small", &["--alpha", "0.1", "--seed", "3"]);
+    let [indirect, lights, reference] = ["indirect", "lights", "reference"];
+    let bounds = ["sphere", "enclosing", "spheroid"];
+    let mut expected = bounds.map(|bound| format!("{lights}-{bound}.png")).to_vec();
+    expected.extend([indirect, reference].map(|name| format!("{name}.png")));
+    expected.sort_unstable();
+    assert_eq!(pictures, expected);
+
+    assert_eq!(json["scene"], "ring");
+    assert_eq!(json["alpha"], 0.1);
+    assert_eq!(json["f0"], 0.9);
+    assert_eq!(json["delta"], 0.001);
+    assert_eq!(json["vpls"], 256);
+    assert_eq!(json["size"], serde_json::json!([64, 48]));
+    assert_eq!(json["seed"], 3);
+
+    let methods = json["methods"].as_array().expect("a list of methods");
+    let names: Vec<&Value> = methods.iter().map(|row| &row["bound"]).collect();
+    assert_eq!(names, bounds);
+    for row in methods.iter().chain([&json["diffuse"]]) {
+        assert_eq!(row["refined"], false);
+        for name in ["cull_ms", "shade_ms", "rmse"] {
+            assert!(number(row, name) >= 0.0);
+        }
+        let [all, contributing, false_positives] = [
+            "lights_per_pixel",
+            "contributing_per_pixel",
+            "false_positives_per_pixel",
+        ]
+        .map(|name| number(row, name));
+        assert!(contributing > 0.0);
+        assert!((all - contributing - false_positives).abs() < 1e-9);
+    }
+    for pair in methods.windows(2) {
+        let [looser, tighter] = [&pair[0], &pair[1]];
+        assert!(number(tighter, "lights_per_pixel") <= number(looser, "lights_per_pixel"));
+        assert_eq!(
+            tighter["contributing_per_pixel"],
+            looser["contributing_per_pixel"]
+        );
+        assert_eq!(tighter["rmse"], looser["rmse"]);
+    }
+}
+
+#[test]
+fn measures_what_is_asked_for() {
+    let asked = ["--bound", "spheroid", "--reference", "off", "--no-denoise"];
+    let (json, pictures) = small_run("asked", &asked);
+    assert_eq!(pictures, ["indirect.png", "lights-spheroid.png"]);
+    let methods = json["methods"].as_array().expect("a list of methods");
+    assert_eq!(methods.len(), 1);
+    assert_eq!(methods[0]["bound"], "spheroid");
+    assert!(methods[0]["rmse"].is_null());
+}
+
+#[test]
+fn renders_a_mesh_without_materials() {
+    let folder = fresh_folder("mesh");
+    let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 1 0\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+    let with_missing_library = format!("mtllib missing.mtl\nusemtl gone\n{tetrahedron}");
+    for (name, content) in [
+        ("plain.obj", tetrahedron.as_bytes()),
+        ("missing.obj", with_missing_library.as_bytes()),
+        ("one.gltf", gltf(3, 36).as_bytes()),
+        ("one.glb", &glb()),
+        ("one.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+    ] {
+        let path = folder.join(name);
+        fs::write(&path, content).expect("a file can be written");
+        let path = path.to_str().expect("the path is UTF-8");
+        let (json, _) = small_run("mesh_out", &["--scene", path]);
+        assert_eq!(json["scene"], path);
+        assert!(number(&json["diffuse"], "lights_per_pixel") >= 0.0);
+    }
+}
