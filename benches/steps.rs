@@ -4,6 +4,9 @@
     reason = "criterion_group! makes a public function without any"
 )]
 
+#[path = "../tests/direct_port/mod.rs"]
+mod direct_port;
+
 use std::hint::black_box;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
@@ -155,6 +158,15 @@ fn bound(criterion: &mut Criterion) {
     per_item(&mut group, "sphere, Lambert", &diffuse_lights(), |light| {
         light.lobe().unit_bound()
     });
+    per_item(
+        &mut group,
+        "tight ellipsoid, no Fresnel",
+        &glossy_lights(NoFresnel),
+        |light| light.lobe().tight_bound(),
+    );
+    per_item(&mut group, "tight ellipsoid, Schlick", &metal, |light| {
+        light.lobe().tight_bound()
+    });
     let unit = metal[0].lobe().unit_bound();
     per_item(&mut group, "placing", &metal, |light| {
         unit.placed(light.position(), 3.0)
@@ -186,6 +198,26 @@ fn stretch(criterion: &mut Criterion) {
     });
 }
 
+/// The same lights with the papers' formulas as printed.
+fn stretches_of_the_direct_port(camera: &Camera, count: usize) -> Vec<direct_port::Stretched> {
+    let (view, offset) = (camera.rotation(), camera.to_camera_space(Vec3::ZERO));
+    let stretch = |(light, i): (&Vpl<GgxLobe>, u32)| {
+        let light = direct_port::Light {
+            position: light.position(),
+            normal: *direction(random_vector(i, 0)),
+            incoming: *direction(*direction(random_vector(i, 0)) + 0.9 * random_vector(i, 3)),
+            alpha: light.lobe().ggx().roughness(),
+            fresnel: direct_port::Fresnel::None,
+            flux: light.flux(),
+            delta: roulette().delta(),
+            xi: Xi::hashed(i, 0, 0).get(),
+        };
+        direct_port::Stretched::new(&light.ellipsoid(), view, offset)
+    };
+    let lights = glossy_lights(NoFresnel);
+    lights.iter().zip(0..).take(count).map(stretch).collect()
+}
+
 fn tile(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("tile");
     let (camera, spheroids) = (camera(), spheroids());
@@ -205,6 +237,11 @@ fn tile(criterion: &mut Criterion) {
         .collect();
     per_item(&mut group, "ellipsoid", &stretches, |light| {
         light.touches(&rectangle, &depths)
+    });
+    let corners = [rectangle.min(), rectangle.max()];
+    let ported = stretches_of_the_direct_port(&camera, spheroids.len());
+    per_item(&mut group, "ellipsoid, direct port", &ported, |light| {
+        light.touches(corners, [depths.near(), depths.far()])
     });
     per_item(&mut group, "sphere", &spheres, |light| {
         light.touches(&rectangle, &depths)

@@ -14,7 +14,7 @@
 //! | light | lobe, position, flux | radiant intensity | [`Vpl`] |
 //! | range | intensity, ξ | probability, range, estimate | [`Roulette`], [`Xi`] |
 //! | bound | lobe, range | shape around all it may light | [`Spheroid`], [`Sphere`], [`Ellipsoid`] |
-//! | stretch | bound, camera | unit sphere | [`Stretch`], [`CameraSphere`] |
+//! | stretch | bound, camera | unit sphere | [`Stretch`], [`CameraSphere`], [`HalfSpace`] |
 //! | tile | pixels, depths | touched or not | [`TileGrid`], [`DepthInterval`], [`TileTest`] |
 //!
 //! Each step can be used alone, and knows nothing of the steps after it.
@@ -119,6 +119,7 @@ mod brdf;
 mod camera;
 mod direction;
 mod error;
+mod half_space;
 mod interleave;
 mod math;
 mod range;
@@ -134,6 +135,7 @@ pub use brdf::{
 pub use camera::Camera;
 pub use direction::Direction;
 pub use error::Error;
+pub use half_space::HalfSpace;
 pub use interleave::Interleave;
 pub use range::{Roulette, Xi};
 pub use stretch::{CameraSphere, Stretch, stretch_matrix, stretch_rotation};

@@ -60,16 +60,21 @@ pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
         + f64::from(a.z) * f64::from(b.z)
 }
 
-/// ‖a × b‖, with no cancellation beyond that of `f64`.
+/// a × b with the rounding of `f64`: nearly parallel vectors keep the direction of their product.
 #[inline]
-pub(crate) fn cross_length(a: Vec3, b: Vec3) -> f32 {
+pub(crate) fn cross(a: Vec3, b: Vec3) -> [f64; 3] {
     let minor = |a0: f32, a1: f32, b0: f32, b1: f32| {
         f64::from(a0) * f64::from(b1) - f64::from(a1) * f64::from(b0)
     };
-    let (x, y, z) = (
+    [
         minor(a.y, a.z, b.y, b.z),
         minor(a.z, a.x, b.z, b.x),
         minor(a.x, a.y, b.x, b.y),
-    );
+    ]
+}
+
+/// ‖v‖, rounded to `f32`.
+#[inline]
+pub(crate) fn length([x, y, z]: [f64; 3]) -> f32 {
     sqrt((x * x + y * y + z * z) as f32)
 }

@@ -39,7 +39,7 @@
 
 use glam::{Mat3, Vec3};
 
-use crate::{Camera, Ellipsoid, Sphere, math};
+use crate::{Bound, Camera, Ellipsoid, Sphere, math};
 
 /// S, the symmetric matrix that stretches camera space so that `ellipsoid` becomes a unit sphere
 /// [Tokuyoshi & Harada 2017, Eq. 16].

@@ -11,8 +11,15 @@ use proptest::prelude::*;
 use reference::{Brdf, Fresnel, Masking, Shape, Vector, smith_g1};
 use stochastic_light_culling::{
     Bound, Bounded, Conductor, ConstantLobe, Dielectric, Direction, Ellipsoid, Ggx, GgxLobe,
-    LambertLobe, NoFresnel, Roulette, Schlick, Spheroid, Vpl, Xi, glam::Vec3,
+    LambertLobe, MaskingShadowing, NoFresnel, Roulette, Schlick, Spheroid, Vpl, Xi, glam::Vec3,
 };
+
+/// What the crate says of a GGX light.
+struct GgxBounds {
+    spheroid: Spheroid,
+    tight: Ellipsoid,
+    max_fresnel: f64,
+}
 
 /// A light and what the crate makes of it.
 #[derive(Debug)]
@@ -39,28 +46,50 @@ impl Case {
     }
 
     fn spheroid(&self, roughness: f32, fresnel: Fresnel, masking: Masking) -> Spheroid {
+        self.ggx_bounds(roughness, fresnel, masking).spheroid
+    }
+
+    fn ggx_bounds(&self, roughness: f32, fresnel: Fresnel, masking: Masking) -> GgxBounds {
         let ggx = Ggx::new(roughness).unwrap();
         match fresnel {
-            Fresnel::None => self.spheroid_of(ggx, NoFresnel, masking),
-            Fresnel::Schlick(f0) => self.spheroid_of(ggx, Schlick::new(f0).unwrap(), masking),
+            Fresnel::None => self.ggx_bounds_of(ggx, NoFresnel, masking),
+            Fresnel::Schlick(f0) => self.ggx_bounds_of(ggx, Schlick::new(f0).unwrap(), masking),
             Fresnel::Dielectric(eta) => {
-                self.spheroid_of(ggx, Dielectric::new(eta).unwrap(), masking)
+                self.ggx_bounds_of(ggx, Dielectric::new(eta).unwrap(), masking)
             }
             Fresnel::Conductor(eta, kappa) => {
-                self.spheroid_of(ggx, Conductor::new(eta, kappa).unwrap(), masking)
+                self.ggx_bounds_of(ggx, Conductor::new(eta, kappa).unwrap(), masking)
             }
         }
     }
 
-    fn spheroid_of<F>(&self, ggx: Ggx, fresnel: F, masking: Masking) -> Spheroid
+    fn ggx_bounds_of<F>(&self, ggx: Ggx, fresnel: F, masking: Masking) -> GgxBounds
     where
         F: stochastic_light_culling::Fresnel,
     {
         let lobe = GgxLobe::new(ggx, fresnel, self.lit.normal, self.lit.incoming);
-        match masking {
-            Masking::HeightCorrelated => self.bound(lobe),
-            Masking::Separable => self.bound(lobe.separable()),
+        let (spheroid, tight) = match masking {
+            Masking::HeightCorrelated => (self.bound(lobe), self.tight_bound(lobe)),
+            Masking::Separable => {
+                let lobe = lobe.separable();
+                (self.bound(lobe), self.tight_bound(lobe))
+            }
+        };
+        GgxBounds {
+            spheroid,
+            tight,
+            max_fresnel: lobe.max_fresnel().into(),
         }
+    }
+
+    fn tight_bound<F, G>(&self, lobe: GgxLobe<F, G>) -> Ellipsoid
+    where
+        F: stochastic_light_culling::Fresnel,
+        G: MaskingShadowing,
+    {
+        let (flux, delta, xi) = self.roulette;
+        let light = Vpl::new(self.position, flux, lobe).unwrap();
+        light.tight_bound(&Roulette::new(delta).unwrap(), Xi::new(xi).unwrap())
     }
 
     /// All bounds that the crate has for this light.
@@ -71,13 +100,16 @@ impl Case {
                 fresnel,
                 masking,
             } => {
-                let spheroid = self.spheroid(roughness, fresnel, masking);
+                let GgxBounds {
+                    spheroid, tight, ..
+                } = self.ggx_bounds(roughness, fresnel, masking);
                 vec![
                     ("spheroid", spheroid.into()),
                     (
                         "ellipsoid of the spheroid",
                         Ellipsoid::from(spheroid).into(),
                     ),
+                    ("tight ellipsoid", tight.into()),
                     ("sphere at the light", spheroid.sphere_at_focus().into()),
                     (
                         "sphere around the spheroid",
@@ -174,14 +206,15 @@ proptest! {
             position: Vec3::ZERO,
             roulette,
         };
-        let spheroid = case.spheroid(roughness, fresnel, Masking::HeightCorrelated);
-        let shape = Shape::from(spheroid);
+        let bounds = case.ggx_bounds(roughness, fresnel, Masking::HeightCorrelated);
+        let shape = Shape::from(bounds.spheroid);
         let (mu, alpha) = (lit.surface.incident_cosine(), f64::from(roughness));
         let (flux, delta, xi) = roulette;
-        let most = fresnel.max_above_surface(mu) * smith_g1(alpha, mu) / (4.0 * mu)
+        // With the crate's F_max, whose own test says how tight it is.
+        let most = bounds.max_fresnel * smith_g1(alpha, mu) / (4.0 * mu)
             * f64::from(flux) / (f64::from(delta) * f64::from(xi));
-        // Where F vanishes altogether there is nothing to touch, and the model has only rounding.
-        prop_assume!(fresnel.max_above_surface(mu) > 1e-15);
+        // Where F vanishes altogether there is nothing to touch.
+        prop_assume!(bounds.max_fresnel > 1e-15);
         let mirror = lit.surface.mirror().unit();
         let side = match lit.surface.normal.cross(lit.surface.incoming) {
             cross if cross.length() > 1e-12 => cross.unit().cross(mirror),

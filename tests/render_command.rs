@@ -255,7 +255,7 @@ fn small_run(test: &str, more: &[&str]) -> (Value, Vec<String>) {
 fn measures_every_bound() {
     let (json, pictures) = small_run("small", &["--alpha", "0.1", "--seed", "3"]);
     let [indirect, lights, reference] = ["indirect", "lights", "reference"];
-    let bounds = ["sphere", "enclosing", "spheroid"];
+    let bounds = ["sphere", "enclosing", "spheroid", "tight"];
     let mut expected = bounds.map(|bound| format!("{lights}-{bound}.png")).to_vec();
     expected.extend([indirect, reference].map(|name| format!("{name}.png")));
     expected.sort_unstable();

@@ -6,8 +6,8 @@ mod reference;
 use proptest::prelude::*;
 use reference::{Shape, Vector, View, exact::outward};
 use stochastic_light_culling::{
-    Bound, Bounded, Camera, CameraSphere, DepthInterval, Ellipsoid, Ggx, GgxLobe, NoFresnel,
-    PixelRectangle, Sphere, Stretch, TileGrid, TileRectangle, TileTest,
+    Bound, Bounded, Camera, CameraSphere, DepthInterval, Ellipsoid, Ggx, GgxLobe, HalfSpace,
+    NoFresnel, PixelRectangle, Sphere, Stretch, TileGrid, TileRectangle, TileTest,
     glam::{Vec2, Vec3},
 };
 
@@ -122,6 +122,37 @@ proptest! {
             let seen = view.to_camera_space(shape.point(unit * (1.0 - 1e-12)));
             let Some((tile, depths)) = tile_around(&camera, seen) else { continue };
             prop_assert!(before_camera.touches(&tile, &depths), "{tile:?} {depths:?}");
+        }
+    }
+
+    #[test]
+    fn tile_with_a_point_on_the_lit_side_is_touched(
+        lit in generators::lit(),
+        position in generators::position(),
+        view in generators::view(),
+        aim in any::<bool>(),
+        points in prop::collection::vec(
+            (generators::unit_vector(), generators::log_uniform(1e-6, 1e3), generators::log_uniform(1e-12, 1.0)),
+            30),
+    ) {
+        let view = if aim { aimed(view, position, 2.0) } else { view };
+        let camera = Camera::new(view.from_world, view.projection).unwrap();
+        let half_space = HalfSpace::new(position, lit.normal, &camera);
+        let normal = lit.surface.normal;
+        for (way, distance, height) in points {
+            // Along the surface, and a little or a lot above it.
+            let above = normal.cross(way) + normal * height;
+            let seen = view.to_camera_space(Vector::from(position) + above * distance);
+            let Some((tile, depths)) = tile_around(&camera, seen) else { continue };
+            prop_assert!(half_space.touches(&tile, &depths), "{tile:?} {depths:?}");
+
+            // And well below it, seen through a thin tile, not.
+            let below = normal.cross(way) * 0.1 - normal;
+            let seen = view.to_camera_space(Vector::from(position) + below * distance);
+            let far = position.length() + view.from_world.w_axis.truncate().length();
+            let Some((tile, depths)) = tile_around(&camera, seen) else { continue };
+            let resolved = distance > 1e-4 * f64::from(far) + 1e-3 * f64::from(depths.far());
+            prop_assert!(!resolved || !half_space.touches(&tile, &depths), "{tile:?} {depths:?}");
         }
     }
 

@@ -19,16 +19,19 @@ pub enum BoundKind {
     Enclosing,
     /// The spheroid
     Spheroid,
+    /// The ellipsoid with three different axes
+    Tight,
 }
 
 impl BoundKind {
-    pub const ALL: [Self; 3] = [Self::Sphere, Self::Enclosing, Self::Spheroid];
+    pub const ALL: [Self; 4] = [Self::Sphere, Self::Enclosing, Self::Spheroid, Self::Tight];
 
     pub fn name(self) -> &'static str {
         match self {
             Self::Sphere => "sphere",
             Self::Enclosing => "enclosing",
             Self::Spheroid => "spheroid",
+            Self::Tight => "tight",
         }
     }
 }
@@ -39,6 +42,10 @@ pub type Candidates<T> = Vec<(u32, T)>;
 
 pub fn spheroid(light: &GlossyLight, roulette: &Roulette, camera: &Camera) -> Option<Stretch> {
     Stretch::new(&range(light, roulette).into(), camera)
+}
+
+pub fn tight(light: &GlossyLight, roulette: &Roulette, camera: &Camera) -> Option<Stretch> {
+    Stretch::new(&light.vpl.tight_bound(roulette, light.xi), camera)
 }
 
 pub fn enclosing_sphere(

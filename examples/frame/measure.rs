@@ -40,6 +40,10 @@ pub fn measure_glossy(
             let test = |light: &_| bounds::spheroid(light, roulette, camera);
             measure(frame, lights, bound, test, done)
         }
+        BoundKind::Tight => {
+            let test = |light: &_| bounds::tight(light, roulette, camera);
+            measure(frame, lights, bound, test, done)
+        }
     }
 }
 

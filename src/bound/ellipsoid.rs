@@ -1,6 +1,7 @@
 use glam::{Mat3, Vec3};
 
-use crate::{Error, error};
+use super::{Bound, rounding_of_sum};
+use crate::{Error, error, math};
 
 /// An ellipsoid, its surface included: {c + R diag(semi-axes) y : ‖y‖ ≤ 1}.
 ///
@@ -14,6 +15,12 @@ pub struct Ellipsoid {
 }
 
 impl Ellipsoid {
+    pub(super) const EMPTY: Self = Self {
+        center: Vec3::ZERO,
+        rotation: Mat3::IDENTITY,
+        semi_axes: Vec3::ZERO,
+    };
+
     /// The ellipsoid around `center` whose axes are the columns of `rotation`.
     ///
     /// # Errors
@@ -57,9 +64,29 @@ impl Ellipsoid {
     pub fn semi_axes(&self) -> Vec3 {
         self.semi_axes
     }
+}
 
-    /// Whether nothing lies inside.
-    pub fn is_empty(&self) -> bool {
+impl Bound for Ellipsoid {
+    fn placed(self, position: Vec3, scale: f32) -> Self {
+        let semi_axes = self.semi_axes * scale;
+        let shortest = semi_axes.min_element();
+        if shortest == 0.0 {
+            return Self {
+                center: position,
+                ..Self::EMPTY
+            };
+        }
+        let offset = self.center * scale;
+        let center = position + offset;
+        let rounding = rounding_of_sum(offset) + rounding_of_sum(center);
+        Self {
+            center,
+            semi_axes: semi_axes * math::round_up(1.0 + rounding / shortest, 4),
+            ..self
+        }
+    }
+
+    fn is_empty(&self) -> bool {
         self.semi_axes == Vec3::ZERO
     }
 }

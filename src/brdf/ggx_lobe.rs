@@ -93,9 +93,13 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
     /// √((1 − √(1−μ²))/2) cancels at grazing incidence, and √(1−μ²) at normal incidence, where the sine
     /// of a cross product does not [Tokuyoshi & Harada 2017, supplemental, below Eq. 2].
     pub fn max_fresnel(&self) -> f32 {
-        let sine = math::cross_length(*self.normal, *self.incoming);
-        let smallest_cosine = self.incident_cosine / math::sqrt(2.0 * (1.0 + sine));
+        let smallest_cosine = self.incident_cosine / math::sqrt(2.0 * (1.0 + self.incident_sine()));
         self.fresnel.maximum(smallest_cosine)
+    }
+
+    /// √(1 − μ²) ≥ 0.
+    pub(crate) fn incident_sine(&self) -> f32 {
+        math::length(math::cross(*self.normal, *self.incoming))
     }
 
     /// G1(μ)/(4μ) = 1/(2(μ + √(kμ² + α²))), which stays finite at grazing incidence.
@@ -123,12 +127,60 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
     pub fn rotation(&self) -> Mat3 {
         let u = *self.mirror_direction();
         // ω_u × n = n × ω_i, without the rounding of ω_u.
-        let w = Direction::new(self.normal.cross(*self.incoming))
-            .map_or_else(|_| u.any_orthonormal_vector(), Vec3::from);
-        // Near normal incidence the cross product is mostly rounding, which is not orthogonal to ω_u.
-        let w = (w - u * u.dot(w)).try_normalize();
-        let w = w.unwrap_or_else(|| u.any_orthonormal_vector());
+        let cross = math::cross(*self.normal, *self.incoming);
+        let length = math::length(cross);
+        let w = if length > 0.0 {
+            Vec3::from_array(cross.map(|x| (x / f64::from(length)) as f32))
+        } else {
+            u.any_orthonormal_vector()
+        };
         Mat3::from_cols(u, w.cross(u), w)
+    }
+}
+
+impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
+    /// An upper bound of F·G2/G1(μ) over all directions above the surface: as F_max is of F alone,
+    /// and never above that.
+    ///
+    /// F is largest where ω_o grazes the surface, and there G2 vanishes. At an angle θ_o to the normal
+    /// the half angle is at most ½(θ_i + θ_o), so F, being quasi-convex, is at most the larger of F(1)
+    /// and F(cos ½(θ_i + θ_o)), which rises with θ_o; G2 falls with it. On a segment of θ_o the product
+    /// is then at most that F at its end times that G2 at its start. For Schlick's factor with
+    /// F0 ≥ 0.02 eight segments come within 10 % of the maximum on average, and 30 % at worst.
+    pub fn max_reflected(&self) -> f32 {
+        /// cosθ at the start, and cos ½θ and sin ½θ at the end: 0°, 40°, 55°, 65°, 72°, 78°, 83°, 87°, 90°.
+        const SEGMENTS: [[f32; 3]; 8] = [
+            [1.0, 0.939_692_6, 0.342_020_15],
+            [0.766_044_5, 0.887_010_8, 0.461_748_63],
+            [0.573_576_4, 0.843_391_4, 0.537_299_6],
+            [0.422_618_27, 0.809_017, 0.587_785_24],
+            [0.309_017, 0.777_146, 0.629_320_4],
+            [0.207_911_7, 0.748_955_7, 0.662_620_07],
+            [0.121_869_34, 0.725_374_4, 0.688_354_6],
+            [0.052_335_96, 0.707_106_77, 0.707_106_77],
+        ];
+        let most = self.max_fresnel();
+        let head_on = self.fresnel.reflectance(1.0);
+        if head_on >= most {
+            return most;
+        }
+        let half_cosine = math::sqrt(0.5 * (1.0 + self.incident_cosine));
+        let half_sine = 0.5 * self.incident_sine() / half_cosine;
+        let unmasked = 1.0 / self.masking_over_four_cosines();
+        // Without an early end, so that the segments can share vector registers.
+        let products = SEGMENTS.map(|[start, end_half_cosine, end_half_sine]| {
+            let cosine = half_cosine * end_half_cosine - half_sine * end_half_sine;
+            let cosine = (cosine - 16.0 * math::UNIT_ROUNDOFF).max(0.0);
+            let masking = G::over_four_incident_cosines(
+                self.incident_cosine,
+                self.incident_root,
+                start,
+                self.ggx.masking_root(start),
+            );
+            self.fresnel.reflectance(cosine).max(head_on) * (masking * unmasked)
+        });
+        let joint = products.into_iter().fold(0.0, f32::max);
+        math::round_up(joint, 96).min(most)
     }
 }
 

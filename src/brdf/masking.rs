@@ -3,7 +3,7 @@ use super::Ggx;
 /// Smith's masking-shadowing function G2: the share of facets that are both lit and seen.
 ///
 /// A type parameter, so that the form an engine shades with is the form its lights are culled by.
-/// Every form is at most G1(μ_i), which the bounds rely on.
+/// Every form is at most G1(μ_i) and grows with μ_o, which the bounds rely on.
 pub trait MaskingShadowing: Copy {
     /// G2(μ_i, μ_o)/(4μ_i): what a microfacet BRDF times μ_o has besides F and D.
     ///

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::{DepthInterval, TileRectangle};
-use crate::{CameraSphere, Stretch};
+use crate::{CameraSphere, HalfSpace, Stretch};
 
 /// Whether a light may touch a tile.
 pub trait TileTest {
@@ -33,6 +33,23 @@ impl TileTest for CameraSphere {
     fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
         let (low, high) = (rectangle.min().extend(1.0), rectangle.max().extend(1.0));
         box_reaches(low, high, depths, self.center(), self.radius_squared())
+    }
+}
+
+impl TileTest for HalfSpace {
+    /// Against the corner of the tile that lies farthest along the normal.
+    #[inline]
+    fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
+        let slopes = [rectangle.min().extend(1.0), rectangle.max().extend(1.0)];
+        let [a, b] = slopes.map(|corner| self.normal() * corner);
+        let farthest = a.max(b);
+        let at_one = farthest.x + farthest.y + farthest.z + self.rounding_at_one();
+        let most = (at_one * depths.near()).max(at_one * depths.far());
+        // As for the box: an overflow to NaN does not lose the light.
+        !matches!(
+            most.partial_cmp(&self.offset()),
+            Some(core::cmp::Ordering::Less)
+        )
     }
 }
 
