@@ -199,7 +199,8 @@ impl Light {
     }
 }
 
-fn fresnel(rng: &mut Rng) -> Fresnel {
+/// Any Fresnel factor, most often none.
+pub fn fresnel(rng: &mut Rng) -> Fresnel {
     let index = |rng: &mut Rng| match rng.u8(0..4) {
         0 => 1.0 + log_uniform(rng, 1e-7, 1.0),
         1 => 1.0 - log_uniform(rng, 1e-7, 0.9),

@@ -1,11 +1,11 @@
 //! Points that a light reaches, exactly, and the thinnest tiles around them: drawn from the whole
 //! domain, most often from its edges.
-#![allow(dead_code, reason = "each user draws a part")]
+#![allow(dead_code, unused_imports, reason = "each user draws a part")]
 
 mod light;
 mod tile;
 
-pub use light::Light;
+pub use light::{Light, fresnel};
 pub use tile::Tile;
 
 use fastrand::Rng;

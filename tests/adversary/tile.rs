@@ -30,15 +30,33 @@ impl Tile {
     /// view.
     pub fn draw(rng: &mut Rng, light: &Light) -> Option<Self> {
         let outgoing = light.outgoing(rng);
+        let distance = log_uniform(rng, 1e-3, 1e6);
+        // Inside by more than the error of double-double, and by less than anything else here.
+        let (tile, view) = Self::thin(rng, light, outgoing, 1e-15, distance)?;
+        Some(if rng.bool() {
+            tile.widened(rng, view)
+        } else {
+            tile
+        })
+    }
+
+    /// The thinnest tile that holds the point in the direction `outgoing`, inside the isosurface by
+    /// the share `inside`, seen from `distance` times how far the light reaches there; and all that
+    /// the eye sees.
+    pub fn thin(
+        rng: &mut Rng,
+        light: &Light,
+        outgoing: Exact,
+        inside: f64,
+        distance: f64,
+    ) -> Option<(Self, TileRectangle)> {
         let reach = light.reach(outgoing);
         if reach.hi() < 1e-30 {
             return None;
         }
-        // Inside by more than the error of double-double, and by less than anything else here.
-        let way = outgoing * (reach * (1.0 - 1e-15));
+        let way = outgoing * (reach * (1.0 - inside));
         let start = Exact::from(light.position);
-        let distance = reach.hi() * log_uniform(rng, 1e-3, 1e6);
-        let view = draw_view(rng, start + way, distance);
+        let view = draw_view(rng, start + way, reach.hi() * distance);
         let mut seen = (start + way).before(&view);
         let mut depths = outward(seen.0[2]);
         if chance(rng, 0.3) {
@@ -70,10 +88,7 @@ impl Tile {
         );
         let rectangle = tile.rectangle;
         let in_view = all.min().cmple(rectangle.min()) & rectangle.max().cmple(all.max());
-        let widen = rng.bool();
-        in_view
-            .all()
-            .then(|| if widen { tile.widened(rng, all) } else { tile })
+        in_view.all().then_some((tile, all))
     }
 
     /// With room on each side, up to the whole view and all depths.

@@ -1,0 +1,78 @@
+//! Stiff and extreme cases, as a table: lights lost, volume added and accuracy, of the crate and of a
+//! direct port of the papers' formulas to `f32`.
+//!
+//! ```text
+//! cargo run --release --example stability -- --help
+//! ```
+
+#[path = "../tests/adversary/mod.rs"]
+mod adversary;
+#[path = "stability/arguments.rs"]
+mod arguments;
+#[path = "stability/cell.rs"]
+mod cell;
+#[path = "../tests/direct_port/mod.rs"]
+mod direct_port;
+#[path = "stability/port.rs"]
+mod port;
+#[path = "output/progress.rs"]
+mod progress;
+#[path = "stability/quantities.rs"]
+mod quantities;
+#[path = "../tests/reference/mod.rs"]
+mod reference;
+#[path = "stability/report.rs"]
+mod report;
+#[path = "stability/tally.rs"]
+mod tally;
+#[path = "stability/thin_tiles.rs"]
+mod thin_tiles;
+
+use std::process::ExitCode;
+
+use rayon::prelude::*;
+
+use arguments::Arguments;
+use cell::Cell;
+use tally::Tally;
+
+fn main() -> ExitCode {
+    match Arguments::read() {
+        Ok(Some(arguments)) => {
+            run(&arguments);
+            ExitCode::SUCCESS
+        }
+        Ok(None) => ExitCode::SUCCESS,
+        Err(reason) => {
+            eprintln!("error: {reason}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(arguments: &Arguments) {
+    let cells = Cell::all();
+    let bar = progress::progress("cases", cells.len());
+    let count = cells.len() as u64;
+    let tallies: Vec<(Cell, Tally)> = cells
+        .into_par_iter()
+        .enumerate()
+        .map(|(i, cell)| {
+            let i = i as u64;
+            let cases = arguments.cases / count + u64::from(i < arguments.cases % count);
+            let tally = cell.measure(i, cases);
+            bar.inc(1);
+            (cell, tally)
+        })
+        .collect();
+    bar.finish_and_clear();
+    let thin = thin_tiles::measure(arguments.cases);
+
+    let text = report::text(&tallies, &thin);
+    if arguments.json {
+        eprintln!("{text}");
+        println!("{}", report::json(&tallies));
+    } else {
+        println!("{text}");
+    }
+}

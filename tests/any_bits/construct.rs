@@ -1,0 +1,228 @@
+//! Every public constructor, with arguments from bits.
+
+use std::hint::black_box;
+
+use fastrand::Rng;
+use stochastic_light_culling::{
+    Camera, Conductor, ConstantLobe, DepthInterval, Dielectric, Direction, Ellipsoid, Ggx, GgxLobe,
+    Interleave, LambertLobe, NoFresnel, PixelRectangle, Roulette, Schlick, Sphere, TileGrid,
+    TileRectangle, Vpl, Xi,
+    glam::{Mat3, Mat4, Vec3, Vec4},
+};
+
+use crate::adversary::{Light, Tile};
+use crate::bits::Bits;
+use crate::probe::{self, Shape};
+use crate::reference::exact::Exact;
+use crate::reference::{Brdf, Fresnel, Masking};
+
+pub fn everything(bits: &mut Bits) {
+    let cameras = cameras(bits);
+    for camera in &cameras {
+        probe::camera(camera);
+    }
+    match bits.byte() % 5 {
+        0 => glossy(bits, &cameras),
+        1 => shapes(bits, &cameras),
+        2 => fresnel(bits),
+        3 => sizes(bits),
+        _ => others(bits, &cameras),
+    }
+}
+
+fn directions(bits: &mut Bits) -> Option<[Direction; 2]> {
+    let [a, b] = [(); 2].map(|()| Direction::new(bits.vector()).ok());
+    let directions = [a?, b?];
+    let _ = directions.map(probe::direction);
+    Some(directions)
+}
+
+fn glossy(bits: &mut Bits, cameras: &[Camera]) {
+    let (Ok(ggx), Some([normal, incoming])) = (Ggx::new(bits.number()), directions(bits)) else {
+        return;
+    };
+    let tag = bits.byte();
+    if let Ok(schlick) = Schlick::new(bits.number()) {
+        let lobe = GgxLobe::new(ggx, schlick, normal, incoming);
+        probe::ggx_lobe(&lobe, cameras);
+        probe::ggx_lobe(&lobe.separable(), cameras);
+    }
+    if tag < 64 {
+        probe::ggx_lobe(&GgxLobe::new(ggx, NoFresnel, normal, incoming), cameras);
+    }
+    if let Ok(dielectric) = Dielectric::new(bits.number()) {
+        probe::ggx_lobe(&GgxLobe::new(ggx, dielectric, normal, incoming), cameras);
+    }
+    if let Ok(conductor) = Conductor::new(bits.number(), bits.number()) {
+        probe::ggx_lobe(&GgxLobe::new(ggx, conductor, normal, incoming), cameras);
+    }
+}
+
+fn shapes(bits: &mut Bits, cameras: &[Camera]) {
+    if let Ok(sphere) = Sphere::new(bits.vector(), bits.number()) {
+        sphere.probe(cameras);
+    }
+    let rotation = match Direction::new(bits.vector()) {
+        Ok(axis) if bits.byte() < 200 => {
+            let (v, w) = axis.any_orthonormal_pair();
+            Mat3::from_cols(*axis, v, w)
+        }
+        _ => bits.matrix(),
+    };
+    if let Ok(ellipsoid) = Ellipsoid::new(bits.vector(), rotation, bits.vector()) {
+        probe::ellipsoid(&ellipsoid, cameras);
+    }
+}
+
+fn fresnel(bits: &mut Bits) {
+    let _ = Schlick::new(bits.number()).map(|f| probe::fresnel(&f));
+    let _ = Dielectric::new(bits.number()).map(|f| probe::fresnel(&f));
+    let _ = Conductor::new(bits.number(), bits.number()).map(|f| probe::fresnel(&f));
+}
+
+fn sizes(bits: &mut Bits) {
+    let image = [bits.size(), bits.size()];
+    if let Ok(grid) = TileGrid::new(image, bits.size()) {
+        black_box((grid.size(), grid.tiles().next()));
+        let tile = [bits.size(), bits.size()];
+        let PixelRectangle { min, max } = grid.pixels(tile);
+        assert!((0..2).all(|i| min[i] <= max[i] && max[i] <= image[i]));
+        black_box(grid.tile_of(tile));
+    }
+    if let Ok(interleave) = Interleave::new(image, bits.size()) {
+        let pixel = [0, 1].map(|i| bits.size() % image[i]);
+        let (subregion, local) = interleave.split_pixel(pixel);
+        assert_eq!(interleave.join_pixel(subregion, local), pixel);
+        black_box((interleave.weight(), interleave.subregion_size(subregion)));
+        let light = bits.size();
+        let (subregion, local) = interleave.split_light(light);
+        assert_eq!(interleave.join_light(subregion, local), light);
+        black_box(interleave.lights_in(subregion, light));
+    }
+}
+
+fn others(bits: &mut Bits, cameras: &[Camera]) {
+    if let Some([normal, _]) = directions(bits) {
+        if let Ok(lobe) = LambertLobe::new(bits.number(), normal) {
+            probe::light(lobe, cameras);
+        }
+    }
+    if let (Ok(roulette), Ok(xi)) = (Roulette::new(bits.number()), Xi::new(bits.number())) {
+        probe::roulette(&roulette, xi);
+        probe::roulette(&roulette, Xi::hashed(bits.word(), bits.word(), bits.word()));
+    }
+    if let Ok(light) = Vpl::new(bits.vector(), bits.number(), ConstantLobe) {
+        assert!(!light.radiant_intensity(Vec3::Z).is_nan());
+        probe::light(ConstantLobe, cameras);
+    }
+    black_box(TileRectangle::new(bits.pair(), bits.pair()).is_ok());
+    let depths = [(); 5].map(|()| bits.number());
+    black_box(DepthInterval::new(depths[0], depths[1]).is_ok());
+    for interval in DepthInterval::modified_half_z(depths).into_iter().flatten() {
+        assert!(0.0 <= interval.near() && interval.near() <= interval.far());
+    }
+    black_box(DepthInterval::half_z(depths));
+}
+
+/// A camera that always is, and those that the bits make.
+fn cameras(bits: &mut Bits) -> Vec<Camera> {
+    let usual = Camera::look_at(Vec3::ZERO, Vec3::X, Vec3::Y, 1.0, 1.5, 0.1..100.0);
+    let looking = Camera::look_at(
+        bits.vector(),
+        bits.vector(),
+        bits.vector(),
+        bits.number(),
+        bits.number(),
+        bits.number()..bits.number(),
+    );
+    let view = match &looking {
+        Ok(camera) if bits.byte() < 200 => {
+            let mut view = Mat4::from_mat3(camera.rotation());
+            view.w_axis = bits.vector().extend(1.0);
+            view
+        }
+        _ => bits.matrix4(),
+    };
+    let mut projection = Mat4::from_cols(
+        Vec4::new(bits.number(), 0.0, 0.0, 0.0),
+        Vec4::new(0.0, bits.number(), 0.0, 0.0),
+        bits.vector().extend(1.0),
+        Vec4::new(0.0, 0.0, bits.number(), 0.0),
+    );
+    if bits.byte() < 32 {
+        projection = bits.matrix4();
+    }
+    let given = Camera::new(view, projection);
+    [usual, looking, given].into_iter().flatten().collect()
+}
+
+/// A light with its parameters from bits, where they lie in the domain, against a tile that it
+/// reaches.
+pub fn light_in_domain(bits: &mut Bits) {
+    let (roughness, albedo, f0) = (bits.number(), bits.number(), bits.number());
+    let (eta, kappa) = (bits.number(), bits.number());
+    let fresnel = match bits.byte() % 6 {
+        0 if Schlick::new(f0).is_ok() => Fresnel::Schlick(f0),
+        // At η = 1 and κ below the root of f32's least number, F is 0 in f32: see `findings`.
+        1 if Dielectric::new(eta).is_ok() && eta != 1.0 => Fresnel::Dielectric(eta),
+        2 if Conductor::new(eta, kappa).is_ok() && (eta != 1.0 || kappa > 1e-15) => {
+            Fresnel::Conductor(eta, kappa)
+        }
+        _ => Fresnel::None,
+    };
+    let masking = if bits.byte() < 128 {
+        Masking::HeightCorrelated
+    } else {
+        Masking::Separable
+    };
+    let brdf = match bits.byte() % 8 {
+        0 if (f32::MIN_POSITIVE..=1.0).contains(&albedo) => Brdf::Lambert { albedo },
+        1 => Brdf::Constant,
+        _ if Ggx::new(roughness).is_ok() => Brdf::Ggx {
+            roughness,
+            fresnel,
+            masking,
+        },
+        _ => return,
+    };
+    let Some([normal, incoming]) = directions(bits) else {
+        return;
+    };
+    let light = Light {
+        brdf,
+        normal,
+        incoming,
+        position: bits.vector(),
+        flux: bits.number(),
+        delta: bits.number(),
+        xi: bits.number(),
+    };
+    let valid = light.position.is_finite()
+        && light.flux.is_finite()
+        && light.flux >= 0.0
+        && Roulette::new(light.delta).is_ok()
+        && Xi::new(light.xi).is_ok();
+    if !valid {
+        return;
+    }
+    // Light nearer to grazing than 1e-7 is left to `findings`.
+    let mu = Exact::from(*normal)
+        .unit()
+        .dot(Exact::from(*incoming).unit());
+    if mu.hi() > -1e-7 && mu.hi() < 1e-7 {
+        return;
+    }
+    let range = light.reach(light.peak().unit()).hi();
+    let distance = light.position.as_dvec3().length();
+    if !(1e-12..1e12).contains(&range) || distance > 1e6 * range {
+        return;
+    }
+    let bound = light.bound();
+    let mut rng = Rng::with_seed(bits.seed());
+    for _ in 0..8 {
+        if let Some(tile) = Tile::draw(&mut rng, &light) {
+            let lost = bound.that_lose(&tile);
+            assert!(lost.is_empty(), "{lost:?} of {light:?} in {tile:?}");
+        }
+    }
+}

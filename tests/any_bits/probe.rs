@@ -1,0 +1,197 @@
+//! What must hold of everything that a constructor has accepted.
+
+use stochastic_light_culling::{
+    Bound, Bounded, Camera, CameraSphere, DepthInterval, Direction, Ellipsoid, Fresnel, GgxLobe,
+    Lobe, MaskingShadowing, PixelRectangle, Roulette, Sphere, Spheroid, Stretch, TileRectangle,
+    TileTest, Vpl, Xi,
+    glam::{Mat3, Vec2, Vec3},
+};
+
+const IMAGE: [u32; 2] = [640, 480];
+
+/// Where shapes are put and by how much they are scaled: the ends of `f32`, and between.
+const PLACES: [Vec3; 4] = [
+    Vec3::ZERO,
+    Vec3::new(1.0, -2.0, 3.0),
+    Vec3::splat(1e-45),
+    Vec3::new(f32::MAX, f32::MIN, 1e30),
+];
+const SCALES: [f32; 6] = [0.0, 1e-45, f32::MIN_POSITIVE, 1.0, 1e30, f32::MAX];
+
+#[track_caller]
+fn number(x: f32) {
+    assert!(!x.is_nan());
+}
+
+#[track_caller]
+fn vector(v: Vec3) {
+    assert!(!v.is_nan(), "{v}");
+}
+
+#[track_caller]
+fn matrix(m: Mat3) {
+    assert!(!m.is_nan(), "{m}");
+}
+
+/// What a lobe's bound is, and how to look into it.
+pub trait Shape: Bound + std::fmt::Debug {
+    fn probe(&self, cameras: &[Camera]);
+}
+
+impl Shape for Sphere {
+    fn probe(&self, cameras: &[Camera]) {
+        vector(self.center());
+        number(self.radius());
+        for camera in cameras {
+            if let Some(test) = CameraSphere::new(self, camera) {
+                vector(test.center());
+                number(test.radius_squared());
+                touching(&test, camera);
+            }
+        }
+    }
+}
+
+impl Shape for Spheroid {
+    fn probe(&self, cameras: &[Camera]) {
+        vector(self.focus());
+        direction(self.axis());
+        number(self.radius());
+        number(self.long_semi_axis());
+        self.sphere_at_focus().probe(cameras);
+        if !self.long_semi_axis().is_finite() {
+            return;
+        }
+        self.enclosing_sphere().probe(cameras);
+        ellipsoid(&Ellipsoid::from(*self), cameras);
+    }
+}
+
+pub fn ellipsoid(ellipsoid: &Ellipsoid, cameras: &[Camera]) {
+    vector(ellipsoid.center());
+    matrix(ellipsoid.rotation());
+    vector(ellipsoid.semi_axes());
+    for camera in cameras {
+        if let Some(test) = Stretch::new(ellipsoid, camera) {
+            let center = camera.to_camera_space(ellipsoid.center());
+            if ellipsoid.semi_axes().min_element() >= f32::MIN_POSITIVE && center.is_finite() {
+                matrix(test.matrix());
+                vector(test.center());
+            }
+            touching(&test, camera);
+        }
+    }
+}
+
+/// Tile tests do not panic, whatever the tile.
+fn touching(test: &impl TileTest, camera: &Camera) {
+    let all = PixelRectangle {
+        min: [0; 2],
+        max: IMAGE,
+    };
+    let rectangles = [
+        Some(camera.tile_rectangle(IMAGE, all)),
+        TileRectangle::new(Vec2::MIN, Vec2::MAX).ok(),
+        TileRectangle::new(Vec2::splat(1e-45), Vec2::splat(1e-45)).ok(),
+    ];
+    let depths = [(0.0, 0.0), (0.0, f32::MAX), (1e-45, 1e-45), (1.0, 2.0)];
+    for rectangle in rectangles.into_iter().flatten() {
+        for (near, far) in depths {
+            let depths = DepthInterval::new(near, far).expect("in order");
+            std::hint::black_box(test.touches(&rectangle, &depths));
+        }
+    }
+}
+
+pub fn direction(direction: Direction) {
+    vector(*direction);
+    assert!((direction.length() - 1.0).abs() < 1e-6, "{direction:?}");
+    vector(*-direction);
+}
+
+pub fn fresnel(fresnel: &impl Fresnel) {
+    for cosine in [0.0, 1e-45, 1e-20, 1e-7, 0.1, 0.5, 0.99, 1.0 - 6e-8, 1.0] {
+        for factor in [fresnel.reflectance(cosine), fresnel.maximum(cosine)] {
+            assert!((0.0..=1.0).contains(&factor), "{factor} at {cosine}");
+        }
+    }
+}
+
+pub fn ggx_lobe<F, G>(lobe: &GgxLobe<F, G>, cameras: &[Camera])
+where
+    F: Fresnel + std::fmt::Debug,
+    G: MaskingShadowing + std::fmt::Debug,
+{
+    assert!((0.0..=1.0).contains(&lobe.incident_cosine()));
+    assert!((0.0..=1.0).contains(&lobe.max_fresnel()));
+    direction(lobe.mirror_direction());
+    matrix(lobe.rotation());
+    let away = *lobe.mirror_direction();
+    values(lobe, &[away, -away]);
+    light(*lobe, cameras);
+}
+
+/// A lobe's light, from the dimmest to the brightest.
+pub fn light<L: Bounded<Bound: Shape> + std::fmt::Debug + Copy>(lobe: L, cameras: &[Camera]) {
+    values(&lobe, &[]);
+    let unit = lobe.unit_bound();
+    unit.probe(cameras);
+    for position in PLACES {
+        for scale in SCALES {
+            unit.placed(position, scale).probe(cameras);
+        }
+        for flux in [0.0, 1e-45, 1.0, f32::MAX] {
+            let light = Vpl::new(position, flux, lobe).expect("finite");
+            for delta in [1e-45, 1.0, f32::MAX] {
+                let roulette = Roulette::new(delta).expect("positive");
+                let xi = Xi::new(1e-45).expect("positive");
+                light.bound(&roulette, xi).probe(cameras);
+            }
+            number(light.radiant_intensity(Vec3::Z));
+        }
+    }
+}
+
+fn values(lobe: &impl Lobe, more: &[Vec3]) {
+    let axes = Vec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
+    let grazing = [Vec3::new(1.0, 1e-45, 0.0), Vec3::new(0.6, 0.0, 0.8)];
+    for outgoing in axes.chain(grazing).chain(more.iter().copied()) {
+        let value = lobe.value(outgoing);
+        assert!(value.is_finite() && value >= 0.0, "{value} to {outgoing}");
+    }
+}
+
+pub fn roulette(roulette: &Roulette, xi: Xi) {
+    for intensity in [0.0, 1e-45, 1.0, f32::MAX] {
+        number(roulette.scale(intensity, xi));
+        number(roulette.radius(intensity, xi));
+        for squared in [1e-45, 1.0, f32::MAX] {
+            let probability = roulette.probability(intensity, squared);
+            assert!((0.0..=1.0).contains(&probability), "{probability}");
+            number(roulette.estimate(intensity, squared, xi));
+            number(roulette.weight(intensity, squared, xi));
+        }
+    }
+}
+
+pub fn camera(camera: &Camera) {
+    matrix(camera.rotation());
+    for point in PLACES {
+        vector(camera.to_camera_space(point));
+    }
+    if camera.to_camera_space(Vec3::ZERO).abs().max_element() < 1e38 {
+        for point in &PLACES[..3] {
+            vector(camera.to_world_space(*point));
+        }
+    }
+    for depth in [0.0, 0.5, 1.0] {
+        number(camera.depth(depth));
+    }
+    for pixel in [[0, 0], [320, 11], [639, 479]] {
+        vector(camera.point_in_pixel(IMAGE, pixel, 2.0));
+        let max = pixel.map(|n| n + 1);
+        let tile = camera.tile_rectangle(IMAGE, PixelRectangle { min: pixel, max });
+        vector(tile.min().extend(0.0));
+        vector(tile.max().extend(0.0));
+    }
+}
