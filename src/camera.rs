@@ -83,6 +83,7 @@ impl Camera {
         let forward = Direction::new(target - eye)?;
         let right = Direction::new(forward.cross(up))?;
         let rotation = Mat3::from_cols(*right, right.cross(*forward), *forward).transpose();
+        let translation = error::finite("eye, turned into the view,", -(rotation * eye))?;
 
         let positive = f32::MIN_POSITIVE;
         let valid = "in (0, 3.1] radians";
@@ -104,7 +105,7 @@ impl Camera {
         let slope = math::tan(0.5 * fov);
         Ok(Self {
             rotation,
-            translation: -(rotation * eye),
+            translation,
             rotation_deviation: error::orthonormal("view matrix", rotation, 1e-4)?,
             slope_scale: Vec2::new(slope * aspect, slope),
             slope_offset: Vec2::ZERO,

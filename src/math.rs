@@ -52,12 +52,23 @@ pub(crate) fn fifth_power(x: f32) -> f32 {
     squared * squared * x
 }
 
-/// a·b with the rounding of `f64`: the products of `f32` numbers are exact in it.
+/// a·b, exact but for one rounding to `f64`, however far its terms cancel.
+///
+/// Products of `f32` numbers are exact in `f64`; what their sums lose is added at the end.
 #[inline]
 pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
-    f64::from(a.x) * f64::from(b.x)
-        + f64::from(a.y) * f64::from(b.y)
-        + f64::from(a.z) * f64::from(b.z)
+    let [x, y, z] = [0, 1, 2].map(|i| f64::from(a[i]) * f64::from(b[i]));
+    let (sum, first) = sum_with_rest(x, y);
+    let (sum, second) = sum_with_rest(sum, z);
+    sum + (first + second)
+}
+
+/// a + b in `f64`, and what rounding took from it [Knuth 1969, 4.2.2].
+#[inline]
+fn sum_with_rest(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
 /// a × b with the rounding of `f64`: nearly parallel vectors keep the direction of their product.
@@ -73,8 +84,14 @@ pub(crate) fn cross(a: Vec3, b: Vec3) -> [f64; 3] {
     ]
 }
 
-/// ‖v‖, rounded to `f32`.
+/// ‖v‖. The squares of an `f32` cross product do not underflow in `f64`.
 #[inline]
-pub(crate) fn length([x, y, z]: [f64; 3]) -> f32 {
-    sqrt((x * x + y * y + z * z) as f32)
+pub(crate) fn length([x, y, z]: [f64; 3]) -> f64 {
+    let squared = x * x + y * y + z * z;
+    #[cfg(feature = "std")]
+    #[expect(clippy::disallowed_methods, reason = "this is the backend")]
+    let root = squared.sqrt();
+    #[cfg(all(feature = "libm", not(feature = "std")))]
+    let root = libm::sqrt(squared);
+    root
 }

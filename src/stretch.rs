@@ -93,17 +93,18 @@ impl Stretch {
         }
         let semi_axes = ellipsoid.semi_axes();
         let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
-        if !(longest.is_finite() && ellipsoid.center().is_finite()) {
+        let center = camera.to_camera_space(ellipsoid.center());
+        if !(longest.is_finite() && center.is_finite()) {
             return Some(Self {
                 matrix: Mat3::ZERO,
                 center: Vec3::ZERO,
             });
         }
         let unscaled = triangular_stretch(camera.rotation() * ellipsoid.rotation(), semi_axes);
-        let center = camera.to_camera_space(ellipsoid.center());
         let rounding = rounding_before(camera, ellipsoid.center(), center, longest);
         let tilt = longest * (128.0 * math::UNIT_ROUNDOFF + 6.0 * camera.rotation_deviation());
-        let enlarged = math::round_up(shortest + (rounding + tilt), 4);
+        // The reciprocal of a subnormal number would overflow.
+        let enlarged = math::round_up(shortest + (rounding + tilt), 4).max(f32::MIN_POSITIVE);
         let matrix = unscaled * (1.0 / enlarged);
         Some(Self {
             matrix,

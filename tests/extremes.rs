@@ -9,6 +9,8 @@ mod reference;
 use adversary::{Light, Tile};
 use fastrand::Rng;
 use rayon::prelude::*;
+use reference::Brdf;
+use stochastic_light_culling::{HalfSpace, TileTest};
 
 const TILES_PER_LIGHT: usize = 16;
 const BATCH: usize = 4096;
@@ -26,7 +28,13 @@ fn no_light_is_lost() {
                 let Some(tile) = Tile::draw(&mut rng, &light) else {
                     continue;
                 };
-                let lost = bound.that_lose(&tile);
+                let mut lost = bound.that_lose(&tile);
+                let lit_side = HalfSpace::new(light.position, light.normal, &tile.camera);
+                let is_lit = lit_side.touches(&tile.rectangle, &tile.depths);
+                // A point light has no surface.
+                if !is_lit && !matches!(light.brdf, Brdf::Constant) {
+                    lost.push("half-space");
+                }
                 assert!(
                     lost.is_empty(),
                     "seed {seed}: {lost:?} of {light:?} in {tile:?}"

@@ -87,7 +87,8 @@ impl Cell {
     }
 
     fn add_inflation(&self, tally: &mut Tally, light: &Light, bound: &Bound, tile: &Tile) {
-        let (Some(r), Bound::Spheroid(spheroid)) = (quantities::exact_radius(light), *bound) else {
+        let (Some(r), Bound::Ggx { spheroid, .. }) = (quantities::exact_radius(light), *bound)
+        else {
             return;
         };
         let Some(stretch) = Stretch::new(&spheroid.into(), &tile.camera) else {

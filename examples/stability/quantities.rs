@@ -46,7 +46,7 @@ pub fn errors(
     let ggx = Ggx::new(roughness).expect("in the domain");
     let [f, f_max] = fresnel_factors(light, ggx, fresnel, half_angle_cosine);
     let r = match bound {
-        Bound::Spheroid(spheroid) => spheroid.radius(),
+        Bound::Ggx { spheroid, .. } => spheroid.radius(),
         Bound::Sphere(_) => f32::NAN,
     };
     let ours = [

@@ -76,6 +76,13 @@ impl Bound for Ellipsoid {
                 ..Self::EMPTY
             };
         }
+        if semi_axes.max_element().is_infinite() {
+            return Self {
+                center: position,
+                semi_axes: Vec3::INFINITY,
+                ..self
+            };
+        }
         let offset = self.center * scale;
         let center = position + offset;
         let rounding = rounding_of_sum(offset) + rounding_of_sum(center);

@@ -12,7 +12,9 @@ impl Bounded for LambertLobe {
     fn unit_bound(&self) -> Sphere {
         const CENTER: f32 = 0.438_691_34;
         const RADIUS: f32 = 0.620_403_2;
-        let reach = math::sqrt(self.albedo() * core::f32::consts::FRAC_1_PI);
+        // √(1/π) apart, since the product with a subnormal albedo would be off by more than its root is.
+        const ROOT_OF_ONE_OVER_PI: f32 = 0.564_189_6;
+        let reach = math::sqrt(self.albedo()) * ROOT_OF_ONE_OVER_PI;
         Sphere::from_parts(
             *self.normal() * (CENTER * reach),
             math::round_up(RADIUS * reach, 16),

@@ -84,8 +84,8 @@ impl Spheroid {
 
     /// The smallest sphere around the spheroid (Fig. 9b).
     pub fn enclosing_sphere(&self) -> Sphere {
-        if self.is_empty() {
-            return Sphere::from_parts(self.focus, 0.0);
+        if self.is_empty() || self.long_semi_axis().is_infinite() {
+            return Sphere::from_parts(self.focus, self.radius / self.roughness);
         }
         let offset = *self.axis * self.center_distance();
         let center = self.focus + offset;
@@ -117,13 +117,13 @@ impl From<Spheroid> for Ellipsoid {
     /// The ellipsoid with the centre and semi-axes (r_u, r, r), enlarged to pay for their rounding.
     fn from(spheroid: Spheroid) -> Self {
         let u = *spheroid.axis;
-        if spheroid.is_empty() {
-            return Ellipsoid::from_parts(spheroid.focus, Mat3::IDENTITY, Vec3::ZERO);
+        let long = spheroid.long_semi_axis();
+        if spheroid.is_empty() || long.is_infinite() {
+            return Ellipsoid::from_parts(spheroid.focus, Mat3::IDENTITY, Vec3::splat(long));
         }
         let (v, w) = u.any_orthonormal_pair();
         let offset = u * spheroid.center_distance();
         let center = spheroid.focus + offset;
-        let long = spheroid.long_semi_axis();
         // In units of the unit sphere: the centre's rounding over the shortest semi-axis, and the
         // tilt of the axes over the ratio of longest to shortest.
         let rounding = rounding_of_sum(offset) + rounding_of_sum(center);

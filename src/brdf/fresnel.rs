@@ -1,5 +1,9 @@
 use crate::{Error, error, math};
 
+/// What a maximum of F is at least said to be: less can have underflowed, and its products with other
+/// terms would be subnormal.
+pub(super) const LEAST_REFLECTED: f32 = 1e-30;
+
 /// The share of light that a smooth interface reflects, F.
 ///
 /// An implementation must be quasi-convex in the angle, that is, fall and then rise, or only one of
@@ -12,11 +16,11 @@ pub trait Fresnel: Copy {
     /// is `smallest_cosine` in \[0, 1\].
     ///
     /// A quasi-convex F is largest at one of the two ends
-    /// [Tokuyoshi & Harada 2017, supplemental Eq. 6].
+    /// [Tokuyoshi & Harada 2017, supplemental Eq. 6]. Never below 10⁻³⁰.
     fn maximum(&self, smallest_cosine: f32) -> f32 {
         let head_on = self.reflectance(1.0);
         let grazing = self.reflectance(math::round_down(smallest_cosine, 16));
-        math::round_up(head_on.max(grazing), 64).min(1.0)
+        math::round_up(head_on.max(grazing), 64).clamp(LEAST_REFLECTED, 1.0)
     }
 }
 

@@ -2,6 +2,7 @@ use core::marker::PhantomData;
 
 use glam::{Mat3, Vec3};
 
+use super::fresnel::LEAST_REFLECTED;
 use super::{Fresnel, Ggx, HeightCorrelated, Lobe, MaskingShadowing, NoFresnel, Separable};
 use crate::{Direction, math};
 
@@ -41,7 +42,13 @@ impl<F: Fresnel> GgxLobe<F> {
     /// The lobe, with height-correlated masking and shadowing, of a surface with unit `normal` = n
     /// for light from the unit direction `incoming` = ω_i. Both point away from the surface.
     pub fn new(ggx: Ggx, fresnel: F, normal: Direction, incoming: Direction) -> Self {
-        let incident_cosine = (math::dot(*normal, *incoming) as f32).clamp(0.0, 1.0);
+        let cosine = math::dot(*normal, *incoming);
+        // Above the surface by less than an f32 can say is still above it.
+        let incident_cosine = if cosine > 0.0 {
+            (cosine as f32).clamp(f32::MIN_POSITIVE, 1.0)
+        } else {
+            0.0
+        };
         Self {
             ggx,
             fresnel,
@@ -99,7 +106,7 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
 
     /// √(1 − μ²) ≥ 0.
     pub(crate) fn incident_sine(&self) -> f32 {
-        math::length(math::cross(*self.normal, *self.incoming))
+        math::length(math::cross(*self.normal, *self.incoming)) as f32
     }
 
     /// G1(μ)/(4μ) = 1/(2(μ + √(kμ² + α²))), which stays finite at grazing incidence.
@@ -130,7 +137,7 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         let cross = math::cross(*self.normal, *self.incoming);
         let length = math::length(cross);
         let w = if length > 0.0 {
-            Vec3::from_array(cross.map(|x| (x / f64::from(length)) as f32))
+            Vec3::from_array(cross.map(|x| (x / length) as f32))
         } else {
             u.any_orthonormal_vector()
         };
@@ -180,7 +187,7 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
             self.fresnel.reflectance(cosine).max(head_on) * (masking * unmasked)
         });
         let joint = products.into_iter().fold(0.0, f32::max);
-        math::round_up(joint, 96).min(most)
+        math::round_up(joint, 96).clamp(LEAST_REFLECTED.min(most), most)
     }
 }
 

@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use fastrand::Rng;
 use stochastic_light_culling::{
-    Bounded, Conductor, ConstantLobe, Dielectric, Direction, Ggx, GgxLobe, LambertLobe, NoFresnel,
-    Roulette, Schlick, Spheroid, Vpl, Xi, glam::Vec3,
+    Bounded, Conductor, ConstantLobe, Dielectric, Direction, Ggx, GgxLobe, LambertLobe,
+    MaskingShadowing, NoFresnel, Roulette, Schlick, Vpl, Xi, glam::Vec3,
 };
 use twofloat::TwoFloat as Real;
 
@@ -159,47 +159,64 @@ impl Light {
                 masking,
             } => {
                 let ggx = Ggx::new(roughness).expect("in the domain");
-                Bound::Spheroid(self.spheroid(ggx, fresnel, masking).expect("in the domain"))
+                self.ggx_bound(ggx, fresnel, masking)
+                    .expect("in the domain")
             }
         }
     }
 
-    fn spheroid(
+    fn ggx_bound(
         &self,
         ggx: Ggx,
         fresnel: Fresnel,
         masking: Masking,
-    ) -> Result<Spheroid, stochastic_light_culling::Error> {
+    ) -> Result<Bound, stochastic_light_culling::Error> {
         Ok(match fresnel {
-            Fresnel::None => self.spheroid_of(ggx, NoFresnel, masking),
-            Fresnel::Schlick(f0) => self.spheroid_of(ggx, Schlick::new(f0)?, masking),
-            Fresnel::Dielectric(eta) => self.spheroid_of(ggx, Dielectric::new(eta)?, masking),
+            Fresnel::None => self.ggx_bound_of(ggx, NoFresnel, masking),
+            Fresnel::Schlick(f0) => self.ggx_bound_of(ggx, Schlick::new(f0)?, masking),
+            Fresnel::Dielectric(eta) => self.ggx_bound_of(ggx, Dielectric::new(eta)?, masking),
             Fresnel::Conductor(eta, kappa) => {
-                self.spheroid_of(ggx, Conductor::new(eta, kappa)?, masking)
+                self.ggx_bound_of(ggx, Conductor::new(eta, kappa)?, masking)
             }
         })
     }
 
-    fn spheroid_of<F>(&self, ggx: Ggx, fresnel: F, masking: Masking) -> Spheroid
+    fn ggx_bound_of<F>(&self, ggx: Ggx, fresnel: F, masking: Masking) -> Bound
     where
         F: stochastic_light_culling::Fresnel,
     {
         let lobe = GgxLobe::new(ggx, fresnel, self.normal, self.incoming);
         match masking {
-            Masking::HeightCorrelated => self.bound_of(lobe),
-            Masking::Separable => self.bound_of(lobe.separable()),
+            Masking::HeightCorrelated => self.both_bounds_of(lobe),
+            Masking::Separable => self.both_bounds_of(lobe.separable()),
+        }
+    }
+
+    fn both_bounds_of<F, G>(&self, lobe: GgxLobe<F, G>) -> Bound
+    where
+        F: stochastic_light_culling::Fresnel,
+        G: MaskingShadowing,
+    {
+        let (roulette, xi) = self.roulette();
+        let light = Vpl::new(self.position, self.flux, lobe).expect("in the domain");
+        Bound::Ggx {
+            spheroid: light.bound(&roulette, xi),
+            tight: light.tight_bound(&roulette, xi),
         }
     }
 
     fn bound_of<L: Bounded>(&self, lobe: L) -> L::Bound {
-        let roulette = Roulette::new(self.delta).expect("in the domain");
-        let xi = Xi::new(self.xi).expect("in the domain");
+        let (roulette, xi) = self.roulette();
         let light = Vpl::new(self.position, self.flux, lobe).expect("in the domain");
         light.bound(&roulette, xi)
     }
+
+    fn roulette(&self) -> (Roulette, Xi) {
+        let roulette = Roulette::new(self.delta).expect("in the domain");
+        (roulette, Xi::new(self.xi).expect("in the domain"))
+    }
 }
 
-/// Any Fresnel factor, most often none.
 pub fn fresnel(rng: &mut Rng) -> Fresnel {
     let index = |rng: &mut Rng| match rng.u8(0..4) {
         0 => 1.0 + log_uniform(rng, 1e-7, 1.0),

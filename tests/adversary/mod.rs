@@ -9,14 +9,19 @@ pub use light::{Light, fresnel};
 pub use tile::Tile;
 
 use fastrand::Rng;
-use stochastic_light_culling::{CameraSphere, Direction, Sphere, Spheroid, Stretch, TileTest};
+use stochastic_light_culling::{
+    CameraSphere, Direction, Ellipsoid, Sphere, Spheroid, Stretch, TileTest,
+};
 
 use crate::reference::Vector;
 
 /// What the crate encloses a light's range by.
 #[derive(Clone, Copy, Debug)]
 pub enum Bound {
-    Spheroid(Spheroid),
+    Ggx {
+        spheroid: Spheroid,
+        tight: Ellipsoid,
+    },
     Sphere(Sphere),
 }
 
@@ -27,16 +32,17 @@ impl Bound {
         let sphere = |sphere: Sphere| {
             CameraSphere::new(&sphere, &tile.camera).is_some_and(|test| touches(&test))
         };
+        let ellipsoid = |ellipsoid: Ellipsoid| {
+            Stretch::new(&ellipsoid, &tile.camera).is_some_and(|test| touches(&test))
+        };
         let found = match *self {
             Self::Sphere(bound) => vec![("sphere", sphere(bound))],
-            Self::Spheroid(bound) => {
-                let stretch = Stretch::new(&bound.into(), &tile.camera);
-                vec![
-                    ("spheroid", stretch.is_some_and(|test| touches(&test))),
-                    ("enclosing sphere", sphere(bound.enclosing_sphere())),
-                    ("sphere at the light", sphere(bound.sphere_at_focus())),
-                ]
-            }
+            Self::Ggx { spheroid, tight } => vec![
+                ("spheroid", ellipsoid(spheroid.into())),
+                ("tight ellipsoid", ellipsoid(tight)),
+                ("enclosing sphere", sphere(spheroid.enclosing_sphere())),
+                ("sphere at the light", sphere(spheroid.sphere_at_focus())),
+            ],
         };
         let lost = found.into_iter().filter(|(_, touched)| !touched);
         lost.map(|(name, _)| name).collect()

@@ -13,7 +13,7 @@ use stochastic_light_culling::{
 use crate::adversary::{Light, Tile};
 use crate::bits::Bits;
 use crate::probe::{self, Shape};
-use crate::reference::exact::Exact;
+use crate::reference::Vector;
 use crate::reference::{Brdf, Fresnel, Masking};
 
 pub fn everything(bits: &mut Bits) {
@@ -163,11 +163,8 @@ pub fn light_in_domain(bits: &mut Bits) {
     let (eta, kappa) = (bits.number(), bits.number());
     let fresnel = match bits.byte() % 6 {
         0 if Schlick::new(f0).is_ok() => Fresnel::Schlick(f0),
-        // At η = 1 and κ below the root of f32's least number, F is 0 in f32: see `findings`.
-        1 if Dielectric::new(eta).is_ok() && eta != 1.0 => Fresnel::Dielectric(eta),
-        2 if Conductor::new(eta, kappa).is_ok() && (eta != 1.0 || kappa > 1e-15) => {
-            Fresnel::Conductor(eta, kappa)
-        }
+        1 if Dielectric::new(eta).is_ok() => Fresnel::Dielectric(eta),
+        2 if Conductor::new(eta, kappa).is_ok() => Fresnel::Conductor(eta, kappa),
         _ => Fresnel::None,
     };
     let masking = if bits.byte() < 128 {
@@ -176,7 +173,7 @@ pub fn light_in_domain(bits: &mut Bits) {
         Masking::Separable
     };
     let brdf = match bits.byte() % 8 {
-        0 if (f32::MIN_POSITIVE..=1.0).contains(&albedo) => Brdf::Lambert { albedo },
+        0 if LambertLobe::new(albedo, Direction::Z).is_ok() => Brdf::Lambert { albedo },
         1 => Brdf::Constant,
         _ if Ggx::new(roughness).is_ok() => Brdf::Ggx {
             roughness,
@@ -205,15 +202,8 @@ pub fn light_in_domain(bits: &mut Bits) {
     if !valid {
         return;
     }
-    // Light nearer to grazing than 1e-7 is left to `findings`.
-    let mu = Exact::from(*normal)
-        .unit()
-        .dot(Exact::from(*incoming).unit());
-    if mu.hi() > -1e-7 && mu.hi() < 1e-7 {
-        return;
-    }
     let range = light.reach(light.peak().unit()).hi();
-    let distance = light.position.as_dvec3().length();
+    let distance = Vector::from(light.position).length();
     if !(1e-12..1e12).contains(&range) || distance > 1e6 * range {
         return;
     }

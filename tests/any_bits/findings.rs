@@ -1,4 +1,4 @@
-//! The smallest cases found of NaN and of lights lost, beyond what the tests with random bits ask for.
+//! The smallest cases of NaN and of lights lost that arbitrary bits have found.
 
 use stochastic_light_culling::{
     Bound, Bounded, Camera, Conductor, Direction, Ellipsoid, Ggx, GgxLobe, LambertLobe, Lobe,
@@ -20,7 +20,6 @@ fn camera_from(offset: Vec3) -> Camera {
 }
 
 #[test]
-#[ignore = "finding: 1/r_min overflows, and 0·∞ is NaN in M"]
 fn subnormal_semi_axes_have_a_stretch_without_nan() {
     let ellipsoid = Ellipsoid::new(Vec3::ZERO, Mat3::IDENTITY, Vec3::splat(1e-45));
     let stretch = Stretch::new(&ellipsoid.expect("positive"), &camera_from(Vec3::ZERO));
@@ -28,7 +27,6 @@ fn subnormal_semi_axes_have_a_stretch_without_nan() {
 }
 
 #[test]
-#[ignore = "finding: the centre of the enclosing sphere is ∞·0"]
 fn infinite_spheroid_has_an_enclosing_sphere_without_nan() {
     let sphere = spheroid(0.5)
         .placed(Vec3::ZERO, f32::MAX)
@@ -38,7 +36,6 @@ fn infinite_spheroid_has_an_enclosing_sphere_without_nan() {
 }
 
 #[test]
-#[ignore = "finding: the centre and the semi-axes are ∞·0 and ∞/∞"]
 fn infinite_spheroid_has_an_ellipsoid_without_nan() {
     let ellipsoid = Ellipsoid::from(spheroid(1e-6).placed(Vec3::ZERO, f32::MAX));
     assert!(!ellipsoid.center().is_nan());
@@ -46,7 +43,6 @@ fn infinite_spheroid_has_an_ellipsoid_without_nan() {
 }
 
 #[test]
-#[ignore = "finding: the centre overflows in camera space, M is 0, and M c′ is 0·∞"]
 fn centre_beyond_f32_in_camera_space_has_a_stretch_without_nan() {
     let ellipsoid = Ellipsoid::new(Vec3::new(f32::MAX, 0.0, 0.0), Mat3::IDENTITY, Vec3::ONE);
     let camera = camera_from(Vec3::new(1e38, 0.0, 0.0));
@@ -55,16 +51,13 @@ fn centre_beyond_f32_in_camera_space_has_a_stretch_without_nan() {
 }
 
 #[test]
-#[ignore = "finding: the translation −V·eye overflows to ∞, and 0·∞ is NaN"]
-fn eye_beyond_f32_is_not_nan() {
+fn eye_beyond_f32_in_camera_space_is_refused() {
     let eye = Vec3::new(3e38, 3e38, 0.0);
     let camera = Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 1.0, 1.0, 0.1..100.0);
-    let camera = camera.expect("finite");
-    assert!(!camera.to_world_space(Vec3::ZERO).is_nan());
+    assert!(camera.is_err());
 }
 
 #[test]
-#[ignore = "finding: μ underflows to 0, which stands for light from below"]
 fn light_a_hair_above_grazing_is_not_empty() {
     let lobe = |normal, incoming| {
         let [normal, incoming] = [normal, incoming].map(|v| Direction::new(v).expect("not zero"));
@@ -81,7 +74,6 @@ fn light_a_hair_above_grazing_is_not_empty() {
 }
 
 #[test]
-#[ignore = "finding: ρ/π is rounded to a subnormal number, or to 0, before its root is taken"]
 fn dark_lambert_lobe_is_not_empty() {
     let lobe = LambertLobe::new(1e-45, Direction::Z).expect("in range");
     let exact = (f64::from(lobe.albedo()) / std::f64::consts::PI).sqrt();
@@ -90,12 +82,33 @@ fn dark_lambert_lobe_is_not_empty() {
 }
 
 #[test]
-#[ignore = "finding: κ² underflows, and a metal all but like the medium before it reflects nothing"]
 fn faint_conductor_is_not_empty() {
     let ggx = Ggx::new(0.1).expect("in range");
     let conductor = Conductor::new(1.0, 1e-25).expect("in range");
     let lobe = GgxLobe::new(ggx, conductor, Direction::Z, Direction::Z);
     assert!(!lobe.unit_bound().is_empty());
+}
+
+#[test]
+fn axes_a_hair_off_normal_incidence_are_orthonormal() {
+    // sin²θ = 5·10⁻⁴⁶ is a subnormal f32, and its root far from sinθ.
+    let normal = Direction::new(Vec3::new(0.0, -1.0, -2.25e-23)).expect("not zero");
+    let incoming = Direction::new(Vec3::new(1.76e-23, -1.0, -4.4e-26)).expect("not zero");
+    let ggx = Ggx::new(1.0).expect("in range");
+    let rotation = GgxLobe::new(ggx, NoFresnel, normal, incoming).rotation();
+    let deviation = rotation.transpose() * rotation - Mat3::IDENTITY;
+    for column in [deviation.x_axis, deviation.y_axis, deviation.z_axis] {
+        assert!(column.abs().max_element() < 1e-6, "{rotation}");
+    }
+}
+
+#[test]
+fn infinite_tight_ellipsoid_is_not_nan() {
+    let ggx = Ggx::new(0.1).expect("in range");
+    let lobe = GgxLobe::new(ggx, NoFresnel, Direction::Z, Direction::Z);
+    let far = Vec3::new(f32::MAX, f32::MIN, 1e30);
+    let ellipsoid = lobe.tight_bound().placed(far, f32::MAX);
+    assert!(!ellipsoid.center().is_nan() && !ellipsoid.semi_axes().is_nan());
 }
 
 #[test]

@@ -59,9 +59,6 @@ impl Shape for Spheroid {
         number(self.radius());
         number(self.long_semi_axis());
         self.sphere_at_focus().probe(cameras);
-        if !self.long_semi_axis().is_finite() {
-            return;
-        }
         self.enclosing_sphere().probe(cameras);
         ellipsoid(&Ellipsoid::from(*self), cameras);
     }
@@ -73,11 +70,8 @@ pub fn ellipsoid(ellipsoid: &Ellipsoid, cameras: &[Camera]) {
     vector(ellipsoid.semi_axes());
     for camera in cameras {
         if let Some(test) = Stretch::new(ellipsoid, camera) {
-            let center = camera.to_camera_space(ellipsoid.center());
-            if ellipsoid.semi_axes().min_element() >= f32::MIN_POSITIVE && center.is_finite() {
-                matrix(test.matrix());
-                vector(test.center());
-            }
+            matrix(test.matrix());
+            vector(test.center());
             touching(&test, camera);
         }
     }
@@ -129,6 +123,12 @@ where
     let away = *lobe.mirror_direction();
     values(lobe, &[away, -away]);
     light(*lobe, cameras);
+    ellipsoid(&lobe.tight_bound(), cameras);
+    for position in PLACES {
+        for scale in SCALES {
+            ellipsoid(&lobe.tight_bound().placed(position, scale), cameras);
+        }
+    }
 }
 
 /// A lobe's light, from the dimmest to the brightest.
