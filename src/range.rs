@@ -117,9 +117,13 @@ impl Roulette {
     /// √(Φ/(δξ)), rounded up: what the isosurface of a lobe of unit intensity, and so its
     /// [`unit_bound`](crate::Bounded::unit_bound), is scaled by for a light of `flux` = Φ.
     ///
-    /// Zero for Φ = 0, and [`f32::MAX`] where the quotient would overflow.
+    /// Zero for Φ = 0, and else within the normal range of `f32`.
     pub fn scale(&self, flux: f32, xi: Xi) -> f32 {
-        math::round_up(self.radius(flux, xi), 5).min(f32::MAX)
+        if flux > 0.0 {
+            math::round_up(self.radius(flux, xi), 5).clamp(f32::MIN_POSITIVE, f32::MAX)
+        } else {
+            0.0
+        }
     }
 
     /// Whether p ≥ ξ: whether the light counts at squared distance l² = `distance_squared`, which is

@@ -1,6 +1,6 @@
 use glam::{Mat3, Vec3};
 
-use super::{Bound, rounding_of_sum};
+use super::{Bound, rounding_of_sum, scaled};
 use crate::{Error, error, math};
 
 /// An ellipsoid, its surface included: {c + R diag(semi-axes) y : ‖y‖ ≤ 1}.
@@ -68,7 +68,7 @@ impl Ellipsoid {
 
 impl Bound for Ellipsoid {
     fn placed(self, position: Vec3, scale: f32) -> Self {
-        let semi_axes = self.semi_axes * scale;
+        let semi_axes = self.semi_axes.map(|semi_axis| scaled(semi_axis, scale));
         let shortest = semi_axes.min_element();
         if shortest == 0.0 {
             return Self {

@@ -51,6 +51,15 @@ impl<L: Bounded> Vpl<L> {
     }
 }
 
+/// `length` times `scale`, rounded up; zero only if one of them is, however small the product.
+fn scaled(length: f32, scale: f32) -> f32 {
+    if length > 0.0 && scale > 0.0 {
+        crate::math::round_up(length * scale, 1).max(f32::MIN_POSITIVE)
+    } else {
+        0.0
+    }
+}
+
 /// What `x + y` can differ from its exact value by, in each component, is at most this length.
 fn rounding_of_sum(sum: Vec3) -> f32 {
     2.0 * crate::math::UNIT_ROUNDOFF * sum.abs().max_element()

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Bound, rounding_of_sum};
+use super::{Bound, rounding_of_sum, scaled};
 use crate::{Error, error, math};
 
 /// A ball, its surface included.
@@ -41,7 +41,7 @@ impl Sphere {
 
 impl Bound for Sphere {
     fn placed(self, position: Vec3, scale: f32) -> Self {
-        let radius = self.radius * scale;
+        let radius = scaled(self.radius, scale);
         if radius == 0.0 {
             return Self::from_parts(position, 0.0);
         }

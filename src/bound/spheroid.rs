@@ -1,6 +1,6 @@
 use glam::{Mat3, Vec3};
 
-use super::{Bound, Ellipsoid, Sphere, rounding_of_sum};
+use super::{Bound, Ellipsoid, Sphere, rounding_of_sum, scaled};
 use crate::{Direction, math};
 
 /// The paper's bounding spheroid, held by its focus, which is the light
@@ -100,10 +100,9 @@ impl Bound for Spheroid {
     fn placed(self, position: Vec3, scale: f32) -> Self {
         // An empty spheroid stays where it is put; another that is scaled has its focus at the origin.
         let focus = position + self.focus * scale;
-        let radius = math::round_up(self.radius * scale, 1);
         Self {
             focus,
-            radius,
+            radius: scaled(self.radius, scale),
             ..self
         }
     }
