@@ -122,8 +122,17 @@ impl Camera {
     /// `point` of world space in camera space, rounded once: where world and camera are far from the
     /// origin, nothing of a near point is lost.
     pub fn to_camera_space(&self, point: Vec3) -> Vec3 {
-        let row = |i| math::dot(self.rotation.row(i), point) + f64::from(self.translation[i]);
-        Vec3::new(row(0) as f32, row(1) as f32, row(2) as f32)
+        self.sum_to_camera_space([point, Vec3::ZERO])
+    }
+
+    /// The exact sum of `parts` in camera space, rounded once.
+    pub(crate) fn sum_to_camera_space(&self, parts: [Vec3; 2]) -> Vec3 {
+        let coordinate = |i| {
+            let row = self.rotation.row(i);
+            let turned = math::dot(row, parts[0]) + math::dot(row, parts[1]);
+            (turned + f64::from(self.translation[i])) as f32
+        };
+        Vec3::new(coordinate(0), coordinate(1), coordinate(2))
     }
 
     /// `point` of camera space in world space, to rounding; the eye is where the origin goes.
@@ -133,9 +142,10 @@ impl Camera {
 
     /// What [`to_camera_space`](Self::to_camera_space) can be off by before it rounds, in length: the
     /// rounding of `f64` in terms this large.
-    pub(crate) fn rounding_of_terms(&self, point: Vec3) -> f32 {
+    pub(crate) fn rounding_of_terms(&self, parts: [Vec3; 2]) -> f32 {
         const ROUNDINGS: f32 = 8.0 * f64::EPSILON as f32;
-        ROUNDINGS * (point.abs().element_sum() + self.translation.abs().element_sum())
+        let terms = parts[0].abs() + parts[1].abs() + self.translation.abs();
+        ROUNDINGS * terms.element_sum()
     }
 
     /// How far the rotation is from orthonormal, element by element.

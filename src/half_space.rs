@@ -42,7 +42,7 @@ impl HalfSpace {
         let point = camera.to_camera_space(position);
         let turned = 3.0 * camera.rotation_deviation();
         let of_offset = (6.0 * math::UNIT_ROUNDOFF + turned) * point.length()
-            + camera.rounding_of_terms(position);
+            + camera.rounding_of_terms([position, Vec3::ZERO]);
         Self {
             normal,
             offset: normal.dot(point) - 1.5 * of_offset,

@@ -52,12 +52,27 @@ pub(crate) fn fifth_power(x: f32) -> f32 {
     squared * squared * x
 }
 
-/// a·b, exact but for one rounding to `f64`, however far its terms cancel.
-///
-/// Products of `f32` numbers are exact in `f64`; what their sums lose is added at the end.
+/// a·b with the rounding of `f64`, in which products of `f32` numbers are exact.
 #[inline]
 pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
-    let [x, y, z] = [0, 1, 2].map(|i| f64::from(a[i]) * f64::from(b[i]));
+    let [x, y, z] = products(a, b);
+    x + y + z
+}
+
+#[inline]
+fn products(a: Vec3, b: Vec3) -> [f64; 3] {
+    [
+        f64::from(a.x) * f64::from(b.x),
+        f64::from(a.y) * f64::from(b.y),
+        f64::from(a.z) * f64::from(b.z),
+    ]
+}
+
+/// a·b, exact but for one rounding to `f64`, however far its terms cancel: what the sums lose is added
+/// at the end.
+#[inline]
+pub(crate) fn exact_dot(a: Vec3, b: Vec3) -> f64 {
+    let [x, y, z] = products(a, b);
     let (sum, first) = sum_with_rest(x, y);
     let (sum, second) = sum_with_rest(sum, z);
     sum + (first + second)

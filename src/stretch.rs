@@ -93,7 +93,8 @@ impl Stretch {
         }
         let semi_axes = ellipsoid.semi_axes();
         let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
-        let center = camera.to_camera_space(ellipsoid.center());
+        let parts = ellipsoid.center_parts();
+        let center = camera.sum_to_camera_space(parts);
         if !(longest.is_finite() && center.is_finite()) {
             return Some(Self {
                 matrix: Mat3::ZERO,
@@ -101,7 +102,7 @@ impl Stretch {
             });
         }
         let unscaled = triangular_stretch(camera.rotation() * ellipsoid.rotation(), semi_axes);
-        let rounding = rounding_before(camera, ellipsoid.center(), center, longest);
+        let rounding = rounding_before(camera, parts, center, longest);
         let tilt = longest * (128.0 * math::UNIT_ROUNDOFF + 6.0 * camera.rotation_deviation());
         // The reciprocal of a subnormal number would overflow.
         let enlarged = math::round_up(shortest + (rounding + tilt), 4).max(f32::MIN_POSITIVE);
@@ -164,11 +165,11 @@ fn median(v: Vec3) -> f32 {
 
 /// The length by which rounding can move a point within `reach` of `center`, in camera space, against
 /// the box of a tile that holds it: all but the first term of the module's section on rounding.
-fn rounding_before(camera: &Camera, world_center: Vec3, center: Vec3, reach: f32) -> f32 {
+fn rounding_before(camera: &Camera, parts: [Vec3; 2], center: Vec3, reach: f32) -> f32 {
     let farthest_depth = center.z.max(0.0) + reach;
     let of_center = 6.0 * center.length();
     let of_box = 9.0 * camera.corner_secant() * farthest_depth;
-    math::UNIT_ROUNDOFF * (of_center + of_box) + camera.rounding_of_terms(world_center)
+    math::UNIT_ROUNDOFF * (of_center + of_box) + camera.rounding_of_terms(parts)
 }
 
 /// A sphere as a tile test wants it: in camera space, with nothing stretched.
@@ -192,7 +193,7 @@ impl CameraSphere {
                 radius_squared: f32::INFINITY,
             });
         }
-        let rounding = rounding_before(camera, sphere.center(), center, radius);
+        let rounding = rounding_before(camera, [sphere.center(), Vec3::ZERO], center, radius);
         let scaling = 3.0 * camera.rotation_deviation() * radius;
         let enlarged = math::round_up(radius + rounding + scaling, 8);
         Some(Self {

@@ -7,16 +7,21 @@ use crate::{Error, error, math};
 ///
 /// The one shape that all bounds which are not spheres become before they meet a view. It is empty
 /// if its semi-axes are zero.
+///
+/// Its centre is held in two parts, the light and the way from there, since of their sum little is left
+/// for a light with a tiny range far from the world's origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid {
-    center: Vec3,
+    light: Vec3,
+    offset: Vec3,
     rotation: Mat3,
     semi_axes: Vec3,
 }
 
 impl Ellipsoid {
     pub(super) const EMPTY: Self = Self {
-        center: Vec3::ZERO,
+        light: Vec3::ZERO,
+        offset: Vec3::ZERO,
         rotation: Mat3::IDENTITY,
         semi_axes: Vec3::ZERO,
     };
@@ -39,20 +44,27 @@ impl Ellipsoid {
             });
         }
         error::orthonormal("ellipsoid rotation", rotation, 1e-6)?;
-        Ok(Self::from_parts(center, rotation, semi_axes))
+        Ok(Self::from_parts(center, Vec3::ZERO, rotation, semi_axes))
     }
 
-    pub(super) fn from_parts(center: Vec3, rotation: Mat3, semi_axes: Vec3) -> Self {
+    pub(super) fn from_parts(light: Vec3, offset: Vec3, rotation: Mat3, semi_axes: Vec3) -> Self {
         Self {
-            center,
+            light,
+            offset,
             rotation,
             semi_axes,
         }
     }
 
-    /// The centre c.
+    /// The centre c, rounded.
     pub fn center(&self) -> Vec3 {
-        self.center
+        self.light + self.offset
+    }
+
+    /// Two vectors whose exact sum is the centre c: the light's position, and the way from there; or c
+    /// and zero, of an ellipsoid that is [made](Self::new) of its centre.
+    pub fn center_parts(&self) -> [Vec3; 2] {
+        [self.light, self.offset]
     }
 
     /// R, whose columns are the directions of the axes.
@@ -70,27 +82,15 @@ impl Bound for Ellipsoid {
     fn placed(self, position: Vec3, scale: f32) -> Self {
         let semi_axes = self.semi_axes.map(|semi_axis| scaled(semi_axis, scale));
         let shortest = semi_axes.min_element();
-        if shortest == 0.0 {
-            return Self {
-                center: position,
-                ..Self::EMPTY
-            };
+        if shortest == 0.0 || semi_axes.max_element().is_infinite() {
+            let semi_axes = Vec3::splat(if shortest == 0.0 { 0.0 } else { f32::INFINITY });
+            return Self::from_parts(position, Vec3::ZERO, self.rotation, semi_axes);
         }
-        if semi_axes.max_element().is_infinite() {
-            return Self {
-                center: position,
-                semi_axes: Vec3::INFINITY,
-                ..self
-            };
-        }
-        let offset = self.center * scale;
-        let center = position + offset;
-        let rounding = rounding_of_sum(offset) + rounding_of_sum(center);
-        Self {
-            center,
-            semi_axes: semi_axes * math::round_up(1.0 + rounding / shortest, 4),
-            ..self
-        }
+        let [light, offset] = self.center_parts().map(|part| part * scale);
+        let sum = light + offset;
+        let rounding = rounding_of_sum(light) + rounding_of_sum(offset) + rounding_of_sum(sum);
+        let growth = math::round_up(1.0 + rounding / shortest, 4);
+        Self::from_parts(position, sum, self.rotation, semi_axes * growth)
     }
 
     fn is_empty(&self) -> bool {

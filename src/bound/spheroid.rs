@@ -118,18 +118,22 @@ impl From<Spheroid> for Ellipsoid {
         let u = *spheroid.axis;
         let long = spheroid.long_semi_axis();
         if spheroid.is_empty() || long.is_infinite() {
-            return Ellipsoid::from_parts(spheroid.focus, Mat3::IDENTITY, Vec3::splat(long));
+            return Ellipsoid::from_parts(
+                spheroid.focus,
+                Vec3::ZERO,
+                Mat3::IDENTITY,
+                Vec3::splat(long),
+            );
         }
         let (v, w) = u.any_orthonormal_pair();
         let offset = u * spheroid.center_distance();
-        let center = spheroid.focus + offset;
-        // In units of the unit sphere: the centre's rounding over the shortest semi-axis, and the
-        // tilt of the axes over the ratio of longest to shortest.
-        let rounding = rounding_of_sum(offset) + rounding_of_sum(center);
+        // In units of the unit sphere: the offset's rounding over the shortest semi-axis, and the tilt
+        // of the axes over the ratio of longest to shortest.
         let tilt = 8.0 * math::UNIT_ROUNDOFF * long;
-        let growth = 1.0 + (rounding + tilt) / spheroid.radius;
+        let growth = 1.0 + (rounding_of_sum(offset) + tilt) / spheroid.radius;
         Ellipsoid::from_parts(
-            center,
+            spheroid.focus,
+            offset,
             Mat3::from_cols(u, v, w),
             Vec3::new(long, spheroid.radius, spheroid.radius)
                 .map(|semi_axis| math::round_up(semi_axis * growth, 8)),

@@ -81,7 +81,7 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
         let shortest = semi_axes.y.min(semi_axes.z);
         let tilt = 4.0 * math::UNIT_ROUNDOFF * (semi_axes.x / shortest);
         let semi_axes = semi_axes * math::round_up(1.0 + tilt, 64);
-        Ellipsoid::from_parts(rotation.x_axis * distance, rotation, semi_axes)
+        Ellipsoid::from_parts(Vec3::ZERO, rotation.x_axis * distance, rotation, semi_axes)
     }
 }
 

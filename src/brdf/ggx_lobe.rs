@@ -42,7 +42,7 @@ impl<F: Fresnel> GgxLobe<F> {
     /// The lobe, with height-correlated masking and shadowing, of a surface with unit `normal` = n
     /// for light from the unit direction `incoming` = ω_i. Both point away from the surface.
     pub fn new(ggx: Ggx, fresnel: F, normal: Direction, incoming: Direction) -> Self {
-        let cosine = math::dot(*normal, *incoming);
+        let cosine = math::exact_dot(*normal, *incoming);
         // Above the surface by less than an f32 can say is still above it.
         let incident_cosine = if cosine > 0.0 {
             (cosine as f32).clamp(f32::MIN_POSITIVE, 1.0)

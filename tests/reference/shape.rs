@@ -71,9 +71,10 @@ impl From<Ellipsoid> for Shape {
         let rotation = ellipsoid.rotation();
         let columns = [rotation.x_axis, rotation.y_axis, rotation.z_axis].map(Vector::from);
         let semi_axes = ellipsoid.semi_axes().to_array().map(f64::from);
+        let [origin, offset] = ellipsoid.center_parts().map(Vector::from);
         Self {
-            offset: Vector::ZERO,
-            origin: ellipsoid.center().into(),
+            offset,
+            origin,
             axes: columns.map(Vector::unit),
             semi_axes: std::array::from_fn(|i| semi_axes[i] * columns[i].length()),
         }
