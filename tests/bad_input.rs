@@ -30,7 +30,7 @@ fn numbers_out_of_range() {
     refuses(&[-1e-9, 1.000_001, -1e-45], Schlick::new);
     refuses(&[0.0, -1.5, 1e-10, 1e10], Dielectric::new);
     refuses(&[0.0, -1.5, 1e10], |eta| Conductor::new(eta, 1.0));
-    refuses(&[-1e-9, 1e10], |kappa| Conductor::new(1.0, kappa));
+    refuses(&[-1e-9, 1e-13, 1e10], |kappa| Conductor::new(1.0, kappa));
     refuses(&[-0.1, 1.1], |albedo| {
         LambertLobe::new(albedo, Direction::Z)
     });

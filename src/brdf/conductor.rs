@@ -21,18 +21,15 @@ impl Conductor {
     ///
     /// # Errors
     ///
-    /// [`Error::Number`] if `index` is outside \[10⁻⁹, 10⁹\], `extinction` outside \[0, 10⁹\], or
-    /// either is NaN.
+    /// [`Error::Number`] if `index` is outside \[10⁻⁹, 10⁹\], `extinction` neither 0 nor in
+    /// \[10⁻¹², 10⁹\], or either is NaN.
     pub fn new(index: f32, extinction: f32) -> Result<Self, Error> {
-        Ok(Self {
-            index: error::number_in("refractive index η", index, "in [1e-9, 1e9]", 1e-9..=1e9)?,
-            extinction: error::number_in(
-                "extinction coefficient κ",
-                extinction,
-                "in [0, 1e9]",
-                0.0..=1e9,
-            )?,
-        })
+        let index = error::number_in("refractive index η", index, "in [1e-9, 1e9]", 1e-9..=1e9)?;
+        let least = if extinction == 0.0 { 0.0 } else { 1e-12 };
+        let valid = "0 or in [1e-12, 1e9]";
+        let range = least..=1e9;
+        let extinction = error::number_in("extinction coefficient κ", extinction, valid, range)?;
+        Ok(Self { index, extinction })
     }
 }
 

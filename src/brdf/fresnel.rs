@@ -18,8 +18,14 @@ pub trait Fresnel: Copy {
     /// A quasi-convex F is largest at one of the two ends
     /// [Tokuyoshi & Harada 2017, supplemental Eq. 6]. Never below 10⁻³⁰.
     fn maximum(&self, smallest_cosine: f32) -> f32 {
+        // Of cosines nearer to zero than this, powers underflow.
+        let smallest_cosine = if smallest_cosine < 1e-15 {
+            0.0
+        } else {
+            math::round_down(smallest_cosine, 16)
+        };
         let head_on = self.reflectance(1.0);
-        let grazing = self.reflectance(math::round_down(smallest_cosine, 16));
+        let grazing = self.reflectance(smallest_cosine);
         math::round_up(head_on.max(grazing), 64).clamp(LEAST_REFLECTED, 1.0)
     }
 }

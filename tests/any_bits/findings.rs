@@ -82,11 +82,16 @@ fn dark_lambert_lobe_is_not_empty() {
 }
 
 #[test]
-fn faint_conductor_is_not_empty() {
+fn faint_conductor_is_refused_or_not_empty() {
+    // κ² is no f32, yet at grazing incidence what counts is κ/cos²θ.
+    assert!(Conductor::new(1.0, 1e-25).is_err());
     let ggx = Ggx::new(0.1).expect("in range");
-    let conductor = Conductor::new(1.0, 1e-25).expect("in range");
+    let conductor = Conductor::new(1.0, 1e-12).expect("in range");
     let lobe = GgxLobe::new(ggx, conductor, Direction::Z, Direction::Z);
     assert!(!lobe.unit_bound().is_empty());
+    let grazing = Direction::new(Vec3::new(1.0, 0.0, 1e-19)).expect("not zero");
+    let lobe = GgxLobe::new(ggx, conductor, Direction::Z, grazing);
+    assert_eq!(lobe.max_fresnel(), 1.0);
 }
 
 #[test]
