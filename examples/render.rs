@@ -9,6 +9,7 @@
 
 #[path = "render/arguments.rs"]
 mod arguments;
+mod command;
 mod frame;
 mod output;
 mod scene;
@@ -26,17 +27,7 @@ use output::{Exposure, Request, Results, Row, progress};
 use scene::{LitPoints, Scene, SurfaceBuffer, Tracer};
 
 fn main() -> ExitCode {
-    let outcome = Arguments::read().and_then(|arguments| match arguments {
-        Some(arguments) => render(&arguments),
-        None => Ok(()),
-    });
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(reason) => {
-            eprintln!("error: {reason}");
-            ExitCode::from(2)
-        }
-    }
+    command::run(|arguments: Arguments| render(&arguments))
 }
 
 /// The whole corridor. Whatever can be refused is, before anything is written.

@@ -11,6 +11,7 @@ mod adversary;
 mod arguments;
 #[path = "stability/cell.rs"]
 mod cell;
+mod command;
 #[path = "../tests/direct_port/mod.rs"]
 mod direct_port;
 #[path = "stability/port.rs"]
@@ -37,17 +38,10 @@ use cell::Cell;
 use tally::Tally;
 
 fn main() -> ExitCode {
-    match Arguments::read() {
-        Ok(Some(arguments)) => {
-            run(&arguments);
-            ExitCode::SUCCESS
-        }
-        Ok(None) => ExitCode::SUCCESS,
-        Err(reason) => {
-            eprintln!("error: {reason}");
-            ExitCode::from(2)
-        }
-    }
+    command::run(|arguments: Arguments| {
+        run(&arguments);
+        Ok(())
+    })
 }
 
 fn run(arguments: &Arguments) {

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use clap::{Parser, ValueEnum, error::ErrorKind};
+use clap::{Parser, ValueEnum};
 use stochastic_light_culling::{Ggx, Roulette, Schlick};
 
 use crate::frame::BoundKind;
@@ -86,20 +86,6 @@ pub enum ReferenceKind {
 }
 
 impl Arguments {
-    /// The arguments of this process; `Ok(None)` if help was asked for, and has been given.
-    pub fn read() -> Result<Option<Self>, String> {
-        match Self::try_parse() {
-            Ok(arguments) => Ok(Some(arguments)),
-            Err(error) => match error.kind() {
-                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-                    error.print().map_err(|error| error.to_string())?;
-                    Ok(None)
-                }
-                _ => Err(first_paragraph(&error)),
-            },
-        }
-    }
-
     /// The bounds to measure, each once, from the loosest to the tightest.
     pub fn bounds(&self) -> Vec<BoundKind> {
         let mut bounds = if self.bound.is_empty() {
@@ -111,14 +97,6 @@ impl Arguments {
         bounds.dedup();
         bounds
     }
-}
-
-/// What went wrong, without the usage after it, on one line.
-fn first_paragraph(error: &clap::Error) -> String {
-    let text = error.render().to_string();
-    let lines: Vec<&str> = text.lines().map(str::trim).collect();
-    let paragraph = lines.split(|line| line.is_empty()).next().unwrap_or(&[]);
-    paragraph.join(" ").replacen("error: ", "", 1)
 }
 
 type Refusal = Box<dyn Error + Send + Sync>;
