@@ -167,6 +167,9 @@ fn bound(criterion: &mut Criterion) {
     per_item(&mut group, "tight ellipsoid, Schlick", &metal, |light| {
         light.lobe().tight_bound()
     });
+    per_item(&mut group, "extent along a direction", &metal, |light| {
+        light.lobe().extent(Direction::X)
+    });
     let unit = metal[0].lobe().unit_bound();
     per_item(&mut group, "placing", &metal, |light| {
         unit.placed(light.position(), 3.0)

@@ -146,25 +146,71 @@ proptest! {
         let (alpha, mu) = (f64::from(roughness), lit.surface.incident_cosine());
         let radius_squared = said.max_reflected * smith_g1(alpha, mu) / (4.0 * PI * mu);
         let shape = Shape::from(said.tight);
-        let tangent = match lit.surface.normal.cross(lit.surface.incoming) {
-            cross if cross.length() > 1e-9 => cross.unit().cross(lit.surface.normal),
-            _ => lit.surface.normal.orthogonal(),
-        };
-        let across = lit.surface.normal.cross(tangent);
         // Touched where the amplitude of the derivation's sinusoids is: a dense net finds it nearly.
-        let mut most = 0.0_f64;
-        for ring in 0..400 {
-            for sector in 0..120 {
-                let (t, phi) = (PI * (f64::from(ring) + 0.5) / 800.0, PI * f64::from(sector) / 60.0);
-                let side = tangent * phi.cos() + across * phi.sin();
-                let half = lit.surface.normal.turned(side, (alpha * t.tan()).atan());
-                let outgoing = half * (2.0 * half.dot(lit.surface.incoming)) - lit.surface.incoming;
-                let ndf = reference::ggx_ndf(alpha, half, lit.surface.normal);
-                let reach = (radius_squared * PI * ndf).sqrt();
-                most = most.max(shape.level(Vector::ZERO, outgoing * reach));
-            }
-        }
+        let most = surface_points(alpha, &lit)
+            .map(|x| shape.level(Vector::ZERO, x * radius_squared.sqrt()))
+            .fold(0.0, f64::max);
         prop_assert!(most <= 1.0, "left at {most}");
         prop_assert!(most > 0.99, "reached only to {most}");
     }
+
+    /// The extent along any direction is that of the surface l = r√(πD), found by search.
+    #[test]
+    fn extent_is_that_of_the_lobe(
+        roughness in generators::up_to_one(0.01),
+        lit in generators::lit(),
+        direction in generators::unit_vector(),
+    ) {
+        let ggx = Ggx::new(roughness).unwrap();
+        let lobe = GgxLobe::new(ggx, NoFresnel, lit.normal, lit.incoming);
+        let direction = Direction::new(direction.to_f32()).unwrap();
+        let extent = f64::from(lobe.extent(direction));
+        let (alpha, mu) = (f64::from(roughness), lit.surface.incident_cosine());
+        let radius = (smith_g1(alpha, mu) / (4.0 * PI * mu)).sqrt();
+
+        let along = Vector::from(*direction).unit();
+        let most = surface_points(alpha, &lit)
+            .map(|x| along.dot(x) * radius)
+            .fold(0.0, f64::max);
+        prop_assert!(extent >= most, "{extent} {most}");
+        // The net is coarse where the lobe bends most.
+        prop_assert!(extent <= most + 0.01 * radius / alpha, "{extent} {most}");
+
+        // Along the paper's axes: r/α, αr, r and r√(kμ² + α²).
+        let rotation = lobe.rotation();
+        let root = ((1.0 - alpha * alpha) * mu * mu + alpha * alpha).sqrt();
+        for (axis, exact) in [
+            (rotation.x_axis, radius / alpha),
+            (-rotation.x_axis, radius * alpha),
+            (rotation.y_axis, radius),
+            (-rotation.y_axis, radius),
+            (rotation.z_axis, radius * root),
+        ] {
+            let extent = f64::from(lobe.extent(Direction::new(axis).unwrap()));
+            // The axes are rounded, by which a long lobe leans over a short extent.
+            let lean = 2e-7 * radius / alpha;
+            prop_assert!((extent - exact).abs() < 1e-5 * exact + lean, "{extent} {exact}");
+            prop_assert!(extent > exact * (1.0 - 1e-9) - lean, "{extent} {exact}");
+        }
+    }
+}
+
+/// Points of the surface l = r√(πD) for r = 1: a net over its half vectors.
+fn surface_points(alpha: f64, lit: &generators::Lit) -> impl Iterator<Item = Vector> {
+    let reference::Surface { normal, incoming } = lit.surface;
+    let tangent = match normal.cross(incoming) {
+        cross if cross.length() > 1e-9 => cross.unit().cross(normal),
+        _ => normal.orthogonal(),
+    };
+    let across = normal.cross(tangent);
+    (0..400 * 120).map(move |i| {
+        let (t, phi) = (
+            PI * (f64::from(i / 120) + 0.5) / 800.0,
+            PI * f64::from(i % 120) / 60.0,
+        );
+        let side = tangent * phi.cos() + across * phi.sin();
+        let half = normal.turned(side, (alpha * t.tan()).atan());
+        let outgoing = half * (2.0 * half.dot(incoming)) - incoming;
+        outgoing * (PI * reference::ggx_ndf(alpha, half, normal)).sqrt()
+    })
 }

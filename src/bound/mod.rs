@@ -10,6 +10,7 @@ mod ggx;
 mod lambert;
 mod sphere;
 mod spheroid;
+mod support;
 mod triaxial;
 
 pub use ellipsoid::Ellipsoid;

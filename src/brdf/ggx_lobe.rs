@@ -89,6 +89,16 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         self.ggx
     }
 
+    /// n, the surface normal.
+    pub fn normal(&self) -> Direction {
+        self.normal
+    }
+
+    /// ω_i, the direction that light comes from.
+    pub fn incoming(&self) -> Direction {
+        self.incoming
+    }
+
     /// μ = ω_i·n in \[0, 1\]; 0 means that the lobe is empty.
     pub fn incident_cosine(&self) -> f32 {
         self.incident_cosine
