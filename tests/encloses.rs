@@ -284,6 +284,30 @@ fn level_reach(shape: &Shape, direction: Vector) -> f64 {
     }
 }
 
+/// A spheroid that is placed already is placed anew without losing its near end to rounding.
+#[test]
+fn placing_a_placed_spheroid_rounds_outward() {
+    let ggx = Ggx::new(0.01).unwrap();
+    let lobe = GgxLobe::new(
+        ggx,
+        NoFresnel,
+        Direction::Z,
+        Direction::new(Vec3::ONE).unwrap(),
+    );
+    let (first, then) = (Vec3::new(0.1, 0.7, -0.3), Vec3::new(900.0, -70.3, 11.1));
+    let once = lobe.unit_bound().placed(first, 1e-3);
+    let again = Shape::from(once.placed(then, 0.3));
+    let inner = Shape::from(once);
+    for end in [-1.0, 1.0] {
+        for axis in 0..3 {
+            let mut unit = Vector::ZERO;
+            unit.0[axis] = end;
+            let moved = inner.point(unit) * f64::from(0.3_f32) + Vector::from(then);
+            assert!(again.level(Vector::ZERO, moved) <= 1.0);
+        }
+    }
+}
+
 #[test]
 fn lights_that_reach_nothing_have_an_empty_range() {
     let below = Direction::new(Vec3::new(0.3, 0.0, -1.0)).unwrap();

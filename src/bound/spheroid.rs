@@ -98,11 +98,21 @@ impl Spheroid {
 
 impl Bound for Spheroid {
     fn placed(self, position: Vec3, scale: f32) -> Self {
-        // An empty spheroid stays where it is put; another that is scaled has its focus at the origin.
-        let focus = position + self.focus * scale;
+        let radius = scaled(self.radius, scale);
+        if self.focus == Vec3::ZERO || radius == 0.0 {
+            return Self {
+                focus: position,
+                radius,
+                ..self
+            };
+        }
+        // Its nearest point is αr from the focus, which may be off by the rounding of these two.
+        let offset = self.focus * scale;
+        let focus = position + offset;
+        let rounding = rounding_of_sum(offset) + rounding_of_sum(focus);
         Self {
             focus,
-            radius: scaled(self.radius, scale),
+            radius: math::round_up(radius + rounding / self.roughness, 4),
             ..self
         }
     }

@@ -1,4 +1,5 @@
-//! How far a GGX lobe reaches along a direction, exactly: without a shape around it.
+//! How far a GGX lobe reaches along a direction, without a shape around it: exactly, but for what F and
+//! G2 take from the NDF.
 //!
 //! With the surface as the image of a sphere, x(m) = (r/α) (2(ω_i·Pm) Pm − ω_i ‖Pm‖²) (see
 //! `triaxial`), the largest d·x(m) over unit m is r/α times the largest eigenvalue of the symmetric
@@ -14,9 +15,9 @@ use crate::{Direction, Fresnel, GgxLobe, MaskingShadowing, math};
 type Vector = [f64; 3];
 
 impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
-    /// The largest d·x over the isosurface for Φ/(δξ) = 1 and a light at the origin, where d is the
-    /// unit `direction`: the support function of the lobe that the joint maximum of F and G2 leaves,
-    /// rounded up. Scale it by [`Roulette::scale`](crate::Roulette::scale).
+    /// An upper bound of d·x over the isosurface for Φ/(δξ) = 1 and a light at the origin, where d is
+    /// the unit `direction`. Exact but for rounding, which is upward, for the surface of the NDF alone,
+    /// with F·G2 at its [joint maximum](GgxLobe::max_reflected) everywhere. Scale it by [`Roulette::scale`](crate::Roulette::scale).
     ///
     /// The extents along ±x, ±y and ±z of any frame are the lobe's box in it, and a plane n·x = c with
     /// c above the extent along n does not meet the lobe. Not negative, for the light itself belongs to
@@ -38,7 +39,9 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
         }
         let alpha = self.ggx().roughness();
         let [n, w, d] = [self.normal(), self.incoming(), direction].map(unit);
-        let eigenvalue = Cubic::new(f64::from(alpha), n, w, d).largest_root_above();
+        // Of the f32 vectors, whose products are exact: of the unit vectors it may be all rounding.
+        let across = math::cross(*self.normal(), *self.incoming());
+        let eigenvalue = Cubic::new(f64::from(alpha), n, w, d, across).largest_root_above();
         let radius_squared =
             self.max_reflected() * self.masking_over_four_cosines() * core::f32::consts::FRAC_1_PI;
         let over_alpha = math::sqrt(radius_squared) / alpha;
@@ -78,20 +81,20 @@ struct Cubic {
 }
 
 impl Cubic {
-    fn new(alpha: f64, n: Vector, w: Vector, d: Vector) -> Self {
-        let across = cross(n, w);
-        let sine = math::length(across);
+    /// `across` is along n × ω_i.
+    fn new(alpha: f64, n: Vector, w: Vector, d: Vector, across: Vector) -> Self {
+        let length = math::length(across);
         // At normal incidence ω_i has no tangent part, and its frame no say.
-        let bitangent = if sine > 0.0 {
-            across.map(|x| x / sine)
+        let bitangent = if length > 0.0 {
+            across.map(|x| x / length)
         } else {
             [0.0; 3]
         };
         let tangent = cross(bitangent, n);
-        let (w_t, w_n) = (sine, dot(w, n));
+        let (w_t, w_n) = (dot(w, tangent), dot(w, n));
         let [d_t, d_b, d_n] = [tangent, bitangent, n].map(|axis| dot(axis, d));
         // Of a frame without a say, d's part in the tangent plane as a whole is the tangent part.
-        let d_t = if sine > 0.0 {
+        let d_t = if length > 0.0 {
             d_t
         } else {
             math::length(cross(n, d))

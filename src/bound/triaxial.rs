@@ -48,7 +48,7 @@
 
 use glam::Vec3;
 
-use super::Ellipsoid;
+use super::{Bound, Ellipsoid};
 use crate::{Fresnel, GgxLobe, MaskingShadowing, Roulette, Vpl, Xi, math};
 
 impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
@@ -89,7 +89,6 @@ impl<F: Fresnel, G: MaskingShadowing> Vpl<GgxLobe<F, G>> {
     /// The [tighter bound](GgxLobe::tight_bound) of everything that accepts this light in a frame with
     /// `roulette` and `xi`.
     pub fn tight_bound(&self, roulette: &Roulette, xi: Xi) -> Ellipsoid {
-        use super::Bound;
         let scale = roulette.scale(self.flux(), xi);
         self.lobe().tight_bound().placed(self.position(), scale)
     }
