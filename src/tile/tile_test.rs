@@ -18,12 +18,13 @@ impl TileTest for Stretch {
     /// apart from the unit sphere if its nearest point is.
     #[inline]
     fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
-        let middle = 0.5 * (rectangle.min() + rectangle.max());
-        let half = 0.5 * (rectangle.max() - rectangle.min());
         let m = self.matrix();
-        let middle = m.x_axis * middle.x + m.y_axis * middle.y + m.z_axis;
-        let half = m.x_axis.abs() * half.x + m.y_axis.abs() * half.y;
-        box_reaches(middle - half, middle + half, depths, self.center(), 1.0)
+        let (min, max) = (rectangle.min(), rectangle.max());
+        let across = ends(m.x_axis * min.x, m.x_axis * max.x);
+        let down = ends(m.y_axis * min.y, m.y_axis * max.y);
+        let low = across[0] + (down[0] + m.z_axis);
+        let high = across[1] + (down[1] + m.z_axis);
+        box_reaches(low, high, depths, self.center(), 1.0)
     }
 }
 
@@ -55,6 +56,10 @@ impl TileTest for HalfSpace {
 
 /// Whether the box from `low` to `high` at depth 1, drawn out over `depths`, comes as near to
 /// `center` as the square root of `radius_squared`.
+///
+/// Each operation here and above is monotone, and rounding is too: of two tiles, one inside the
+/// other, the larger is touched by whatever touches the smaller, bit for bit. That is what lets blocks
+/// of tiles be tested first.
 #[inline]
 fn box_reaches(
     low: Vec3,
@@ -63,12 +68,21 @@ fn box_reaches(
     center: Vec3,
     radius_squared: f32,
 ) -> bool {
-    let low = (low * depths.near()).min(low * depths.far());
-    let high = (high * depths.near()).max(high * depths.far());
-    let apart = (low - center).max(center - high).max(Vec3::ZERO);
+    let [low, _] = ends(low * depths.near(), low * depths.far());
+    let [_, high] = ends(high * depths.near(), high * depths.far());
+    let [_, not_below] = ends(center, low);
+    let [nearest, _] = ends(not_below, high);
+    let apart = center - nearest;
+    let apart_squared = apart.x * apart.x + apart.y * apart.y + apart.z * apart.z;
     // Written so that an overflow to NaN does not lose the light.
     !matches!(
-        apart.length_squared().partial_cmp(&radius_squared),
+        apart_squared.partial_cmp(&radius_squared),
         Some(core::cmp::Ordering::Greater)
     )
+}
+
+/// The lesser and the greater of each component.
+#[inline]
+fn ends(a: Vec3, b: Vec3) -> [Vec3; 2] {
+    [a.min(b), a.max(b)]
 }
