@@ -131,12 +131,16 @@
 #![forbid(unsafe_code)]
 #![warn(clippy::disallowed_methods)]
 
+#[cfg(feature = "cull")]
+extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
 mod bound;
 mod brdf;
 mod camera;
+#[cfg(feature = "cull")]
+mod cull;
 mod direction;
 mod error;
 mod half_space;
@@ -153,6 +157,8 @@ pub use brdf::{
     Lobe, MaskingShadowing, NoFresnel, Schlick, Separable,
 };
 pub use camera::Camera;
+#[cfg(feature = "cull")]
+pub use cull::{BatchShape, CullCounters, Culler, LightBatch, LightLists, TileDepths};
 pub use direction::Direction;
 pub use error::Error;
 pub use half_space::HalfSpace;

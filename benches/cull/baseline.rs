@@ -1,0 +1,84 @@
+//! The paper's loop as one would write it without any of this crate: scalar, an array of structures,
+//! each light against each tile, a list for each depth interval.
+
+use stochastic_light_culling::glam::{Mat3, Vec2, Vec3};
+
+use crate::workload::{self, Depths, halves};
+
+/// M and Mc′.
+struct Light {
+    matrix: Mat3,
+    center: Vec3,
+}
+
+struct Tile {
+    min: Vec2,
+    max: Vec2,
+    depths: [[f32; 2]; 2],
+}
+
+pub struct Subregion {
+    lights: Vec<Light>,
+    tiles: Vec<Tile>,
+    lists: Vec<[Vec<u32>; 2]>,
+}
+
+pub fn frame(frame: &[workload::Subregion], depths: Depths) -> Vec<Subregion> {
+    let camera = workload::camera();
+    let tile = |tile: &workload::Tile| Tile {
+        min: tile.rectangle().min(),
+        max: tile.rectangle().max(),
+        depths: halves(depths(tile)).map(|interval| [interval.near(), interval.far()]),
+    };
+    let light = |light: &workload::Light| {
+        let stretch = light.stretch(&camera);
+        Light {
+            matrix: stretch.matrix(),
+            center: stretch.center(),
+        }
+    };
+    let ready = |subregion: &workload::Subregion| Subregion {
+        lights: subregion.lights.iter().map(light).collect(),
+        tiles: subregion.tiles.iter().map(tile).collect(),
+        lists: vec![[Vec::new(), Vec::new()]; subregion.tiles.len()],
+    };
+    frame.iter().map(ready).collect()
+}
+
+impl Subregion {
+    pub fn cull(&mut self) {
+        for (tile, lists) in self.tiles.iter().zip(&mut self.lists) {
+            lists.iter_mut().for_each(Vec::clear);
+            for (number, light) in (0..).zip(&self.lights) {
+                let [low, high] = light.bounds(tile);
+                for (list, depths) in lists.iter_mut().zip(tile.depths) {
+                    if light.touches(low, high, depths) {
+                        list.push(number);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Light {
+    /// The box of the tile at depth 1 after stretching.
+    fn bounds(&self, tile: &Tile) -> [Vec2; 2] {
+        let m = &self.matrix;
+        let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(Vec3::truncate);
+        let (left, right) = (x * tile.min.x, x * tile.max.x);
+        let (top, bottom) = (y * tile.min.y, y * tile.max.y);
+        [
+            left.min(right) + top.min(bottom) + z,
+            left.max(right) + top.max(bottom) + z,
+        ]
+    }
+
+    fn touches(&self, low: Vec2, high: Vec2, [near, far]: [f32; 2]) -> bool {
+        let m = self.matrix.z_axis.z;
+        let low = (low * near).min(low * far).extend(m * near);
+        let high = (high * near).max(high * far).extend(m * far);
+        let apart = (low - self.center).max(self.center - high).max(Vec3::ZERO);
+        apart.length_squared() <= 1.0
+    }
+}

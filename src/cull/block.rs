@@ -1,0 +1,179 @@
+//! From blocks to smaller blocks to tiles.
+
+use alloc::vec::Vec;
+
+use fearless_simd::{Simd, SimdBase, SimdMask};
+
+use super::batch::Chunk;
+use super::filter::{filter, in_depth};
+use super::lanes::{LANES, Lanes, load, parts, splat, store};
+use super::shape::{BatchShape, InLanes, TileLanes};
+use super::tile_depths::{Area, NONE};
+use super::{CullCounters, LightBatch, LightLists, TileDepths};
+
+/// The memory of a culler.
+#[derive(Clone, Debug)]
+pub(super) struct Scratch<T: BatchShape> {
+    /// The lights of a block of each size, from the largest.
+    blocks: Vec<LightBatch<T>>,
+    levels: usize,
+    /// Chunk by chunk, what the lights share with all tiles of a row.
+    rows: Vec<Row<T>>,
+    pub counters: CullCounters,
+}
+
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+struct Row<T: InLanes>(T::Row<Lanes>);
+
+impl<T: BatchShape> Scratch<T> {
+    pub fn new() -> Self {
+        Self {
+            blocks: Vec::new(),
+            levels: 0,
+            rows: Vec::new(),
+            counters: CullCounters::default(),
+        }
+    }
+
+    /// Makes ready to cut the grid `levels` times.
+    pub fn begin(&mut self, levels: usize) {
+        self.blocks
+            .resize_with(levels.max(self.blocks.len()), LightBatch::new);
+        self.levels = levels;
+        self.counters = CullCounters::default();
+    }
+
+    /// The lists of all tiles.
+    #[inline(always)]
+    pub fn cull<S: Simd>(
+        &mut self,
+        simd: S,
+        lights: &LightBatch<T>,
+        tiles: &TileDepths,
+        lists: &mut LightLists,
+    ) {
+        let mut walk = Walk {
+            tiles,
+            lists,
+            rows: &mut self.rows,
+            counters: &mut self.counters,
+        };
+        walk.block(simd, lights, tiles.all(), &mut self.blocks[..self.levels]);
+    }
+}
+
+struct Walk<'a, T: BatchShape> {
+    tiles: &'a TileDepths,
+    lists: &'a mut LightLists,
+    rows: &'a mut Vec<Row<T>>,
+    counters: &'a mut CullCounters,
+}
+
+impl<T: BatchShape> Walk<'_, T> {
+    /// The lists of the tiles of `area`, whose lights are among `lights`.
+    fn block<S: Simd>(
+        &mut self,
+        simd: S,
+        lights: &LightBatch<T>,
+        area: Area,
+        blocks: &mut [LightBatch<T>],
+    ) {
+        let Some((block, smaller)) = blocks.split_first_mut() else {
+            return simd.vectorize(
+                #[inline(always)]
+                || self.tiles(simd, lights, area),
+            );
+        };
+        for part in area.parts() {
+            let Some([across, down, depths]) = self.tiles.around(part) else {
+                self.counters.empty += 1;
+                continue;
+            };
+            simd.vectorize(
+                #[inline(always)]
+                || {
+                    let tile = TileLanes::new(simd, across, down, depths);
+                    self.counters.block_tests += filter(simd, lights, &tile, block);
+                },
+            );
+            if !block.is_empty() {
+                self.block(simd, block, part, smaller);
+            }
+        }
+    }
+
+    /// The lists of the tiles of `area`, one by one.
+    #[inline(always)]
+    fn tiles<S: Simd>(&mut self, simd: S, lights: &LightBatch<T>, area: Area) {
+        let chunks = lights.chunks();
+        if self.rows.len() < chunks.len() {
+            self.rows.resize(chunks.len(), Row(T::NO_ROW));
+        }
+        let rows = &mut self.rows[..chunks.len()];
+        for y in area.min[1]..area.max[1] {
+            let down = self.tiles.down(y);
+            for (Chunk { fields, .. }, row) in chunks.iter().zip(&mut *rows) {
+                for part in 0..parts::<S>() {
+                    let shared = T::row(simd, fields, part, splat(simd, down));
+                    for (lanes, vector) in row.0.as_mut().iter_mut().zip(shared.as_ref()) {
+                        store::<S>(lanes, part, *vector);
+                    }
+                }
+            }
+            for x in area.min[0]..area.max[0] {
+                let across = self.tiles.across(x);
+                let first = self.lists.slot([x, y]);
+                for (interval, depths) in self.tiles.depths(x, y).iter().enumerate() {
+                    if *depths == NONE {
+                        self.counters.empty += 1;
+                        continue;
+                    }
+                    let tile = TileLanes::new(simd, across, down, *depths);
+                    let start = self.lists.len();
+                    self.counters.tile_tests += list(simd, lights, rows, &tile, self.lists);
+                    self.lists.end(first + interval, start);
+                }
+            }
+        }
+    }
+}
+
+/// Appends the lights that may touch `tile` to `lists`; gives the number of tests.
+#[inline(always)]
+fn list<S: Simd, T: BatchShape>(
+    simd: S,
+    lights: &LightBatch<T>,
+    rows: &[Row<T>],
+    tile: &TileLanes<S>,
+    lists: &mut LightLists,
+) -> u64 {
+    let chunks = lights.chunks();
+    // Each write is of a whole vector, of which the next one keeps only what counts.
+    let numbers = lists.room_for((chunks.len() + 1) * LANES);
+    let (mut end, mut tested) = (0, 0);
+    let groups = chunks.chunks(LANES).zip(rows.chunks(LANES));
+    for ((chunks, rows), reach) in groups.zip(lights.reach()) {
+        let mut candidates = in_depth(simd, reach, tile);
+        tested += candidates.count_ones();
+        while candidates != 0 {
+            let index = candidates.trailing_zeros() as usize;
+            candidates &= candidates - 1;
+            let (chunk, row) = (&chunks[index], &rows[index].0);
+            for part in 0..parts::<S>() {
+                let mut shared = T::row_of(S::f32s::splat(simd, 0.0));
+                for (vector, lanes) in shared.as_mut().iter_mut().zip(row.as_ref()) {
+                    *vector = load(simd, lanes, part);
+                }
+                let touching = !T::misses(simd, &chunk.fields, part, &shared, tile);
+                // Without asking first whether there are any: it would be guessed wrong too often.
+                let of_chunk = &chunk.numbers[part * S::u32s::LEN..][..S::u32s::LEN];
+                let chosen = S::u32s::from_slice(simd, of_chunk).compress(touching);
+                chosen.store_slice(&mut numbers[end..end + S::u32s::LEN]);
+                end += touching.to_bitmask().count_ones() as usize;
+            }
+        }
+    }
+    lists.take(end);
+    u64::from(tested) * LANES as u64
+}

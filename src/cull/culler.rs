@@ -1,0 +1,137 @@
+use fearless_simd::{Level, dispatch};
+
+use super::block::Scratch;
+use super::shape::BatchShape;
+use super::{LightBatch, LightLists, TileDepths};
+use crate::Error;
+
+/// Finds the lights of each tile.
+///
+/// Holds the memory that it works in, so that frames after the first allocate nothing, and knows which
+/// vectors the processor has.
+///
+/// ```
+/// use stochastic_light_culling::{
+///     Camera, CameraSphere, Culler, DepthInterval, LightBatch, LightLists, Sphere, TileDepths,
+///     TileGrid, glam::Vec3,
+/// };
+///
+/// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
+/// let grid = TileGrid::new([128, 128], 16)?;
+/// let mut tiles = TileDepths::new(grid.size(), 1, |tile| {
+///     camera.tile_rectangle([128, 128], grid.pixels(tile))
+/// })?;
+/// for tile in grid.tiles() {
+///     tiles.set(tile, [DepthInterval::new(5.0, 20.0)?]);
+/// }
+///
+/// let mut batch = LightBatch::new();
+/// let sphere = Sphere::new(Vec3::new(0.0, 0.0, -10.0), 1.0)?;
+/// batch.extend(CameraSphere::new(&sphere, &camera).map(|shape| (7, shape)));
+///
+/// let mut lists = LightLists::new();
+/// Culler::new().cull(&batch, &tiles, &mut lists)?;
+/// assert_eq!(lists.of([4, 4], 0), [7]);
+/// assert!(lists.of([0, 0], 0).is_empty());
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Culler<T: BatchShape> {
+    level: Level,
+    blocks: bool,
+    scratch: Scratch<T>,
+}
+
+/// What one cull did, and what it was spared.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct CullCounters {
+    /// Tests of a light against a block of tiles.
+    pub block_tests: u64,
+    /// Tests of a light against a depth interval of a tile.
+    pub tile_tests: u64,
+    /// Depth intervals, and whole blocks of tiles, without surfaces: nothing was tested against them.
+    pub empty: u64,
+    /// Lights in all lists together.
+    pub pairs: u64,
+}
+
+impl<T: BatchShape> Culler<T> {
+    /// A culler with the widest vectors that this processor has; without the feature `std`, that the
+    /// target is compiled for.
+    pub fn new() -> Self {
+        Self::with_level(widest())
+    }
+
+    /// A culler with vectors of at most `lanes` lanes. The lists are the same; for measurements.
+    ///
+    /// On x86 16 is AVX-512, 8 is AVX2, and 4 is SSE; elsewhere there is but one width.
+    pub fn with_lanes(lanes: usize) -> Self {
+        let widest = widest();
+        #[cfg(target_arch = "x86_64")]
+        let widest = match lanes {
+            ..8 => widest.as_sse2().map_or(widest, Level::Sse2),
+            8..16 => widest.as_avx2().map_or(widest, Level::Avx2),
+            16.. => widest,
+        };
+        Self::with_level(widest)
+    }
+
+    fn with_level(level: Level) -> Self {
+        Self {
+            level,
+            blocks: true,
+            scratch: Scratch::new(),
+        }
+    }
+
+    /// The same culler without blocks of tiles: each tile is tested against all lights. The lists are
+    /// the same, and sooner done for a few dozen lights.
+    pub fn without_blocks(self) -> Self {
+        Self {
+            blocks: false,
+            ..self
+        }
+    }
+
+    /// Puts into `lists` the lights of `batch` that may touch each depth interval of each tile: those
+    /// for which [`touches`](crate::TileTest::touches) is true of the tile's rectangle and the interval.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Size`], with empty lists, if all lists together hold more lights than a `u32` counts.
+    pub fn cull(
+        &mut self,
+        batch: &LightBatch<T>,
+        tiles: &TileDepths,
+        lists: &mut LightLists,
+    ) -> Result<CullCounters, Error> {
+        lists.reset(tiles.all().size(), tiles.intervals() as usize);
+        let scratch = &mut self.scratch;
+        let levels = if self.blocks { tiles.all().levels() } else { 0 };
+        scratch.begin(levels);
+        dispatch!(self.level, simd => scratch.cull(simd, batch, tiles, lists));
+        if u32::try_from(lists.len()).is_err() {
+            lists.reset([0; 2], 0);
+            return Err(Error::Size {
+                quantity: "grid of tiles",
+                value: tiles.size(),
+                valid: "such that all lists together hold less than 2³² lights",
+            });
+        }
+        Ok(CullCounters {
+            pairs: lists.len() as u64,
+            ..scratch.counters
+        })
+    }
+}
+
+/// Without `std` there is no asking the processor: what the target is compiled for.
+fn widest() -> Level {
+    Level::try_detect().unwrap_or(Level::baseline())
+}
+
+impl<T: BatchShape> Default for Culler<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

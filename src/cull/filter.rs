@@ -1,0 +1,169 @@
+//! From the lights of a block to those of a part of it.
+
+use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdMask, f32x16, mask32x16, u8x64, u32x16};
+
+use super::LightBatch;
+use super::batch::{Chunk, Reach};
+use super::lanes::{LANES, load, parts};
+use super::shape::{BatchShape, TileLanes};
+
+/// Which of sixteen chunks reach depths of `tile`, as bits.
+#[inline(always)]
+pub(super) fn in_depth<S: Simd>(simd: S, reach: &Reach, tile: &TileLanes<S>) -> u32 {
+    let mut bits = 0;
+    for part in 0..parts::<S>() {
+        let near = load(simd, &reach.near, part).simd_le(tile.depths[1]);
+        let far = load(simd, &reach.far, part).simd_ge(tile.depths[0]);
+        bits |= ((near & far).to_bitmask() as u32) << (part * S::f32s::LEN);
+    }
+    bits
+}
+
+/// Which of a chunk's lights may touch `tile`, as bits.
+#[inline(always)]
+fn touching<S: Simd, T: BatchShape>(simd: S, chunk: &Chunk<T>, tile: &TileLanes<S>) -> u32 {
+    let mut bits = 0;
+    for part in 0..parts::<S>() {
+        let row = T::row(simd, &chunk.fields, part, tile.down);
+        let misses = T::misses(simd, &chunk.fields, part, &row, tile);
+        bits |= ((!misses).to_bitmask() as u32) << (part * S::f32s::LEN);
+    }
+    bits
+}
+
+/// Copies those of `lights` that may touch `tile` to `kept`, in their order; gives the number of tests.
+#[inline(always)]
+pub(super) fn filter<S: Simd, T: BatchShape>(
+    simd: S,
+    lights: &LightBatch<T>,
+    tile: &TileLanes<S>,
+    kept: &mut LightBatch<T>,
+) -> u64 {
+    let (into, into_reach) = kept.make_room_for(lights);
+    let (mut len, mut tested) = (0, 0);
+    for (group, reach) in lights.chunks().chunks(LANES).zip(lights.reach()) {
+        let mut candidates = in_depth(simd, reach, tile);
+        tested += candidates.count_ones();
+        while candidates != 0 {
+            let index = candidates.trailing_zeros() as usize % LANES;
+            candidates &= candidates - 1;
+            let bits = touching(simd, &group[index], tile);
+            if bits != 0 {
+                let end = len + bits.count_ones() as usize;
+                append(simd, &group[index], bits, into, len);
+                for chunk in [len / LANES, (end - 1) / LANES] {
+                    into_reach[chunk / LANES].widen(chunk, reach.of(index));
+                }
+                len = end;
+            }
+        }
+    }
+    blank(into, len);
+    kept.set_len(len);
+    u64::from(tested) * LANES as u64
+}
+
+/// Copies the lights of `chunk` that `bits` tell to `into`, from place `start` on.
+#[inline(always)]
+fn append<S: Simd, T: BatchShape>(
+    simd: S,
+    chunk: &Chunk<T>,
+    bits: u32,
+    into: &mut [Chunk<T>],
+    start: usize,
+) {
+    if S::f32s::LEN == LANES {
+        append_lanes(simd, chunk, bits, into, start);
+    } else {
+        append_each(chunk, bits, into, start);
+    }
+}
+
+/// One light after the other.
+#[inline(always)]
+fn append_each<T: BatchShape>(
+    chunk: &Chunk<T>,
+    mut bits: u32,
+    into: &mut [Chunk<T>],
+    mut place: usize,
+) {
+    while bits != 0 {
+        let from = bits.trailing_zeros() as usize % LANES;
+        bits &= bits - 1;
+        let (to, lane) = (&mut into[place / LANES], place % LANES);
+        let fields = chunk.fields.as_ref().iter();
+        for (field, to) in fields.zip(to.fields.as_mut()) {
+            to[lane] = field[from];
+        }
+        to.numbers[lane] = chunk.numbers[from];
+        place += 1;
+    }
+}
+
+/// All at once: turned so that they begin at the first free lane, and what does not fit at the first
+/// lane of the next chunk.
+#[inline(always)]
+fn append_lanes<S: Simd, T: BatchShape>(
+    simd: S,
+    chunk: &Chunk<T>,
+    bits: u32,
+    into: &mut [Chunk<T>],
+    start: usize,
+) {
+    let (index, first) = (start / LANES, start % LANES);
+    let chosen = mask32x16::from_bitmask(simd, u64::from(bits));
+    let taken = mask32x16::from_bitmask(simd, (1 << first) - 1);
+    let lanes: u8x64<S> = u32x16::from_slice(simd, &LANE_BYTES)
+        .compress(chosen)
+        .bitcast();
+    let lanes = lanes.swizzle_dyn(u8x64::from_slice(simd, &TURNS[first]));
+    let [last, next, ..] = &mut into[index..] else {
+        return;
+    };
+    let fields = chunk.fields.as_ref().iter();
+    let places = last.fields.as_mut().iter_mut().zip(next.fields.as_mut());
+    for (field, (last, next)) in fields.zip(places) {
+        let turned = f32x16::from_slice(simd, field).swizzle_dyn(lanes);
+        let merged = taken.select(f32x16::from_slice(simd, last), turned);
+        merged.store_slice(last);
+        turned.store_slice(next);
+    }
+    let turned = u32x16::from_slice(simd, &chunk.numbers).swizzle_dyn(lanes);
+    let merged = taken.select(u32x16::from_slice(simd, &last.numbers), turned);
+    merged.store_slice(&mut last.numbers);
+    turned.store_slice(&mut next.numbers);
+}
+
+/// Lets the lanes from `len` to the end of its chunk touch nothing.
+fn blank<T: BatchShape>(chunks: &mut [Chunk<T>], len: usize) {
+    let fields = chunks[len / LANES].fields.as_mut().iter_mut();
+    for (lanes, nowhere) in fields.zip(T::NOWHERE.as_ref()) {
+        lanes[len % LANES..].copy_from_slice(&nowhere[len % LANES..]);
+    }
+}
+
+/// The four bytes of each lane's number, as indices of the bytes of a vector.
+const LANE_BYTES: [u32; LANES] = {
+    let mut lanes = [0; LANES];
+    let mut lane = 0;
+    while lane < LANES {
+        lanes[lane] = 0x0302_0100 + 0x0404_0404 * lane as u32;
+        lane += 1;
+    }
+    lanes
+};
+
+/// Which byte goes where if all lanes move up by the row's number, and around the end.
+const TURNS: [[u8; 4 * LANES]; LANES] = {
+    let mut turns = [[0; 4 * LANES]; LANES];
+    let mut turn = 0;
+    while turn < LANES {
+        let mut byte = 0;
+        while byte < 4 * LANES {
+            turns[turn][byte] = ((byte + 4 * LANES - 4 * turn) % (4 * LANES)) as u8;
+            byte += 1;
+        }
+        turn += 1;
+    }
+    turns
+};

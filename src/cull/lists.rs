@@ -1,0 +1,98 @@
+use alloc::vec::Vec;
+
+/// For each tile and depth interval the numbers of the lights that may touch it.
+///
+/// Two arrays, as a GPU reads them: [`ranges`](Self::ranges) says where each list begins and ends in
+/// [`numbers`](Self::numbers). Keeps its memory from frame to frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LightLists {
+    columns: usize,
+    intervals: usize,
+    ranges: Vec<[u32; 2]>,
+    /// Longer than what is in use, so that whole vectors can be written.
+    numbers: Vec<u32>,
+    len: usize,
+}
+
+impl LightLists {
+    /// Lists of no tiles.
+    pub const fn new() -> Self {
+        Self {
+            columns: 0,
+            intervals: 0,
+            ranges: Vec::new(),
+            numbers: Vec::new(),
+            len: 0,
+        }
+    }
+
+    /// The lights that may touch `tile` in its `interval`-th depth interval, in the order of their batch.
+    /// Empty for a tile or an interval that does not exist.
+    pub fn of(&self, tile: [u32; 2], interval: u32) -> &[u32] {
+        let [x, y] = tile.map(|n| n as usize);
+        let slot = (y * self.columns + x) * self.intervals + interval as usize;
+        if x >= self.columns || interval as usize >= self.intervals {
+            return &[];
+        }
+        let [start, end] = self
+            .ranges
+            .get(slot)
+            .map_or([0; 2], |range| range.map(|n| n as usize));
+        &self.numbers[start..end]
+    }
+
+    /// Where the list of each depth interval of each tile, row by row, begins and ends in
+    /// [`numbers`](Self::numbers): the `k`-th of n intervals of tile (x, y), with `w` tiles across, is at
+    /// `(y w + x) n + k`.
+    pub fn ranges(&self) -> &[[u32; 2]] {
+        &self.ranges
+    }
+
+    /// The lists, one after the other, in no particular order of the tiles.
+    pub fn numbers(&self) -> &[u32] {
+        &self.numbers[..self.len]
+    }
+
+    /// How many lights all lists hold together.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether all lists are empty.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Empties the lists and makes one for each slot of a grid.
+    pub(super) fn reset(&mut self, [columns, rows]: [usize; 2], intervals: usize) {
+        self.columns = columns;
+        self.intervals = intervals;
+        self.len = 0;
+        self.ranges.clear();
+        self.ranges.resize(columns * rows * intervals, [0; 2]);
+    }
+
+    /// Where the ranges of a tile begin.
+    pub(super) fn slot(&self, [x, y]: [usize; 2]) -> usize {
+        (y * self.columns + x) * self.intervals
+    }
+
+    /// The numbers not yet in use, at least `count` of them.
+    pub(super) fn room_for(&mut self, count: usize) -> &mut [u32] {
+        let end = self.len + count;
+        if self.numbers.len() < end {
+            self.numbers.resize(end.max(2 * self.numbers.len()), 0);
+        }
+        &mut self.numbers[self.len..]
+    }
+
+    /// Takes the first `count` of the numbers not yet in use.
+    pub(super) fn take(&mut self, count: usize) {
+        self.len += count;
+    }
+
+    /// Says that the list of `slot` begins at `start` and ends here.
+    pub(super) fn end(&mut self, slot: usize, start: usize) {
+        self.ranges[slot] = [start as u32, self.len as u32];
+    }
+}

@@ -1,0 +1,208 @@
+use alloc::vec::Vec;
+
+use crate::{DepthInterval, Error, TileRectangle};
+
+/// A grid of tiles and the depths that each of them sees, in one interval or in several.
+///
+/// For *tiled* culling each tile has its own intervals, such as the two of
+/// [`modified_half_z`](DepthInterval::modified_half_z). For *clustered* culling all tiles share their
+/// slices, such as [`exponential_slices`](DepthInterval::exponential_slices), of which those without
+/// surfaces may be left out.
+///
+/// ```
+/// use stochastic_light_culling::{Camera, DepthInterval, TileDepths, TileGrid, glam::Vec3};
+///
+/// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.5, 0.1..100.0)?;
+/// let grid = TileGrid::new([96, 64], 16)?;
+/// let mut tiles = TileDepths::new(grid.size(), 2, |tile| {
+///     camera.tile_rectangle([96, 64], grid.pixels(tile))
+/// })?;
+/// for tile in grid.tiles() {
+///     let depths = grid.pixels(tile).pixels().map(|[x, y]| (x + y) as f32); // of a depth buffer
+///     tiles.set(tile, DepthInterval::modified_half_z(depths));
+/// }
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct TileDepths {
+    intervals: usize,
+    /// The slopes of each column, and of each row.
+    columns: Vec<[f32; 2]>,
+    rows: Vec<[f32; 2]>,
+    /// Tile by tile, row by row.
+    depths: Vec<[f32; 2]>,
+    /// Around all of a tile's.
+    around: Vec<[f32; 2]>,
+}
+
+/// No interval: it ends before it begins.
+pub(super) const NONE: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
+
+impl TileDepths {
+    /// A grid of `size` = \[columns, rows\] tiles, each with room for `intervals` depth intervals, all of
+    /// which are missing at first.
+    ///
+    /// `rectangle` says what a tile covers. Only the tiles of the first row and of the first column are
+    /// asked for: those of a column share their slopes across, those of a row their slopes down.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Size`] if there are no tiles or no intervals, or more of both together than a `u32`
+    /// counts.
+    pub fn new(
+        size: [u32; 2],
+        intervals: u32,
+        rectangle: impl Fn([u32; 2]) -> TileRectangle,
+    ) -> Result<Self, Error> {
+        let slots = u64::from(size[0]) * u64::from(size[1]) * u64::from(intervals);
+        if slots == 0 || slots > u64::from(u32::MAX) {
+            return Err(Error::Size {
+                quantity: "grid of tiles",
+                value: size,
+                valid: "at least 1×1, and with its depth intervals less than 2³²",
+            });
+        }
+        let columns = (0..size[0]).map(|x| rectangle([x, 0]));
+        let rows = (0..size[1]).map(|y| rectangle([0, y]));
+        let tiles = slots as usize / intervals as usize;
+        Ok(Self {
+            intervals: intervals as usize,
+            columns: columns.map(|tile| [tile.min().x, tile.max().x]).collect(),
+            rows: rows.map(|tile| [tile.min().y, tile.max().y]).collect(),
+            depths: alloc::vec![NONE; slots as usize],
+            around: alloc::vec![NONE; tiles],
+        })
+    }
+
+    /// How many tiles there are, across and down.
+    pub fn size(&self) -> [u32; 2] {
+        [self.columns.len() as u32, self.rows.len() as u32]
+    }
+
+    /// How many depth intervals a tile has room for.
+    pub fn intervals(&self) -> u32 {
+        self.intervals as u32
+    }
+
+    /// Gives `tile` these depth intervals, in their order, and no others; `None` is one without
+    /// surfaces, which no light touches. Intervals beyond [`intervals`](Self::intervals) are left out.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such tile.
+    pub fn set(
+        &mut self,
+        tile: [u32; 2],
+        intervals: impl IntoIterator<Item = impl Into<Option<DepthInterval>>>,
+    ) {
+        let [x, y] = tile.map(|n| n as usize);
+        assert!(x < self.columns.len(), "no such column of tiles");
+        let index = y * self.columns.len() + x;
+        let first = index * self.intervals;
+        let mut around = NONE;
+        let mut intervals = intervals.into_iter();
+        for depths in &mut self.depths[first..][..self.intervals] {
+            let interval: Option<DepthInterval> = intervals.next().and_then(Into::into);
+            *depths = interval.map_or(NONE, |interval| [interval.near(), interval.far()]);
+            around = joined(around, *depths);
+        }
+        self.around[index] = around;
+    }
+
+    /// Whether no interval of any tile has surfaces.
+    pub fn is_empty(&self) -> bool {
+        self.around.iter().all(|depths| *depths == NONE)
+    }
+
+    pub(super) fn all(&self) -> Area {
+        Area {
+            min: [0; 2],
+            max: [self.columns.len(), self.rows.len()],
+        }
+    }
+
+    pub(super) fn across(&self, x: usize) -> [f32; 2] {
+        self.columns[x]
+    }
+
+    pub(super) fn down(&self, y: usize) -> [f32; 2] {
+        self.rows[y]
+    }
+
+    /// The depth intervals of the tile at column `x` and row `y`.
+    pub(super) fn depths(&self, x: usize, y: usize) -> &[[f32; 2]] {
+        let first = (y * self.columns.len() + x) * self.intervals;
+        &self.depths[first..][..self.intervals]
+    }
+
+    /// The slopes across and down, and the depths, that hold those of all tiles of `area`, if there are
+    /// any depths.
+    pub(super) fn around(&self, area: Area) -> Option<[[f32; 2]; 3]> {
+        let [columns, rows] = [0, 1].map(|i| area.min[i]..area.max[i]);
+        let mut depths = NONE;
+        for y in rows.clone() {
+            let first = y * self.columns.len();
+            let row = &self.around[first + columns.start..first + columns.end];
+            depths = row.iter().copied().fold(depths, joined);
+        }
+        let across = self.columns[columns].iter().copied();
+        let down = self.rows[rows].iter().copied();
+        (depths != NONE).then(|| [across.fold(NONE, joined), down.fold(NONE, joined), depths])
+    }
+}
+
+/// The range that holds both. There is no NaN here, which `f32::min` would take care of.
+fn joined(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
+    [
+        if b[0] < a[0] { b[0] } else { a[0] },
+        if b[1] > a[1] { b[1] } else { a[1] },
+    ]
+}
+
+/// A block of tiles: from `min`, included, to `max`, not included.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Area {
+    pub min: [usize; 2],
+    pub max: [usize; 2],
+}
+
+impl Area {
+    pub fn size(self) -> [usize; 2] {
+        [0, 1].map(|i| self.max[i] - self.min[i])
+    }
+
+    /// How many times it is cut until its parts have few tiles.
+    pub fn levels(self) -> usize {
+        let mut levels = 0;
+        let mut size = self.size();
+        while size.iter().any(|n| *n > FEW_TILES) {
+            levels += 1;
+            size = size.map(part_of);
+        }
+        levels
+    }
+
+    /// Its parts, row by row.
+    pub fn parts(self) -> impl Iterator<Item = Self> {
+        let part = self.size().map(part_of);
+        let cuts = move |i: usize| {
+            (self.min[i]..self.max[i])
+                .step_by(part[i])
+                .map(move |min| [min, (min + part[i]).min(self.max[i])])
+        };
+        cuts(1).flat_map(move |[top, bottom]| {
+            cuts(0).map(move |[left, right]| Self {
+                min: [left, top],
+                max: [right, bottom],
+            })
+        })
+    }
+}
+
+/// A block of no more tiles than this, across and down, is not cut into smaller blocks.
+const FEW_TILES: usize = 5;
+
+/// How long the parts of `tiles` tiles in a row are: a third, as nearly as may be, but not too few.
+fn part_of(tiles: usize) -> usize {
+    tiles.div_ceil(tiles.div_ceil(FEW_TILES).min(3))
+}

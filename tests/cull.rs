@@ -1,0 +1,265 @@
+//! Culling many lights against many tiles gives what the test of one light against one tile gives.
+#![cfg(feature = "cull")]
+
+mod generators;
+mod reference;
+mod workload;
+
+use generators::cases;
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
+use stochastic_light_culling::{
+    BatchShape, Camera, CameraSphere, Culler, DepthInterval, Ellipsoid, Error, LightBatch,
+    LightLists, PixelRectangle, Sphere, Stretch, TileDepths, TileRectangle,
+    glam::{Mat3, Vec3},
+};
+use workload::{Depths, Subregion};
+
+fn camera() -> Camera {
+    Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.2, 1.5, 0.1..100.0).unwrap()
+}
+
+/// How many tiles, and what each of them sees.
+#[derive(Clone, Debug)]
+struct Grid {
+    size: [u32; 2],
+    depths: Vec<Vec<Option<DepthInterval>>>,
+}
+
+impl Grid {
+    fn rectangle(&self, [x, y]: [u32; 2]) -> TileRectangle {
+        let pixels = PixelRectangle {
+            min: [x, y],
+            max: [x + 1, y + 1],
+        };
+        camera().tile_rectangle(self.size, pixels)
+    }
+
+    fn tiles(&self) -> impl Iterator<Item = ([u32; 2], &Vec<Option<DepthInterval>>)> {
+        let [width, height] = self.size;
+        let positions = (0..height).flat_map(move |y| (0..width).map(move |x| [x, y]));
+        positions.zip(&self.depths)
+    }
+
+    fn tile_depths(&self) -> TileDepths {
+        let intervals = self.depths[0].len() as u32;
+        let mut tiles = TileDepths::new(self.size, intervals, |tile| self.rectangle(tile)).unwrap();
+        for (tile, depths) in self.tiles() {
+            tiles.set(tile, depths.iter().copied());
+        }
+        tiles
+    }
+}
+
+fn grid() -> impl Strategy<Value = Grid> {
+    let interval = prop_oneof![
+        1 => Just(None),
+        1 => Just(DepthInterval::new(0.0, f32::MAX).ok()),
+        6 => (0.01..60.0_f32, 1.0..4.0_f32)
+            .prop_map(|(near, ratio)| DepthInterval::new(near, near * ratio).ok()),
+    ];
+    ([1..24_u32, 1..24_u32], 1..4_usize).prop_flat_map(move |(size, intervals)| {
+        let depths = prop::collection::vec(interval.clone(), intervals);
+        let depths = prop::collection::vec(depths, (size[0] * size[1]) as usize);
+        depths.prop_map(move |depths| Grid { size, depths })
+    })
+}
+
+/// Before the camera, at all distances and sizes, and now and then everywhere.
+fn stretch() -> impl Strategy<Value = Stretch> {
+    let center = (-30.0..30.0_f32, -20.0..20.0_f32, -50.0..5.0_f32);
+    let ellipsoid = (center, generators::ellipsoid(), -3.0..0.5_f32);
+    let anywhere = ellipsoid.prop_map(|((x, y, z), shape, size)| {
+        let semi_axes = shape.semi_axes() / shape.semi_axes().max_element();
+        let semi_axes = semi_axes * (10_f32.powf(size) * z.abs().max(0.1));
+        Ellipsoid::new(Vec3::new(x, y, z), shape.rotation(), semi_axes).unwrap()
+    });
+    let huge = Just(Ellipsoid::new(Vec3::ZERO, Mat3::IDENTITY, Vec3::splat(1e38)).unwrap());
+    let distant =
+        Just(Ellipsoid::new(Vec3::splat(1e30), Mat3::IDENTITY, Vec3::splat(1.0)).unwrap());
+    prop_oneof![30 => anywhere, 1 => huge, 1 => distant]
+        .prop_map(|ellipsoid| Stretch::new(&ellipsoid, &camera()).unwrap())
+}
+
+fn sphere() -> impl Strategy<Value = CameraSphere> {
+    let center = (-30.0..30.0_f32, -20.0..20.0_f32, -50.0..5.0_f32);
+    let radius = prop_oneof![30 => generators::log_uniform(1e-2, 20.0), 1 => Just(1e38)];
+    (center, radius).prop_map(|((x, y, z), radius)| {
+        let sphere = Sphere::new(Vec3::new(x, y, z), radius as f32).unwrap();
+        CameraSphere::new(&sphere, &camera()).unwrap()
+    })
+}
+
+/// All cullers, each of which must find the same.
+fn cullers<T: BatchShape>() -> impl Iterator<Item = Culler<T>> {
+    let flat_or_not = |lanes| {
+        [
+            Culler::with_lanes(lanes),
+            Culler::with_lanes(lanes).without_blocks(),
+        ]
+    };
+    [16, 8, 4].into_iter().flat_map(flat_or_not)
+}
+
+fn culled_as_one_by_one<T: BatchShape>(grid: &Grid, shapes: &[T]) -> Result<(), TestCaseError> {
+    let tiles = grid.tile_depths();
+    let mut batch = LightBatch::new();
+    batch.extend((100..).zip(shapes.iter().copied()));
+    for mut culler in cullers() {
+        let mut lists = LightLists::new();
+        let counters = culler.cull(&batch, &tiles, &mut lists).unwrap();
+        let mut pairs = 0;
+        for (tile, depths) in grid.tiles() {
+            for (interval, depths) in (0..).zip(depths) {
+                let touches = |shape: &T| {
+                    depths.is_some_and(|depths| shape.touches(&grid.rectangle(tile), &depths))
+                };
+                let touching = (100..).zip(shapes).filter(|(_, shape)| touches(shape));
+                let expected: Vec<u32> = touching.map(|(number, _)| number).collect();
+                prop_assert_eq!(
+                    lists.of(tile, interval),
+                    &expected,
+                    "{:?} {:?}",
+                    tile,
+                    depths
+                );
+                pairs += expected.len();
+            }
+        }
+        prop_assert_eq!(lists.len(), pairs);
+        prop_assert_eq!(counters.pairs, pairs as u64);
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(cases(256))]
+
+    #[test]
+    fn lists_of_ellipsoids_are_those_of_the_scalar_test(
+        grid in grid(),
+        shapes in prop::collection::vec(stretch(), 0..150),
+    ) {
+        culled_as_one_by_one(&grid, &shapes)?;
+    }
+
+    #[test]
+    fn lists_of_spheres_are_those_of_the_scalar_test(
+        grid in grid(),
+        shapes in prop::collection::vec(sphere(), 0..150),
+    ) {
+        culled_as_one_by_one(&grid, &shapes)?;
+    }
+}
+
+#[test]
+fn memory_is_reused_without_a_trace_of_earlier_frames() {
+    let mut runner = TestRunner::deterministic();
+    let mut draw = |lights: std::ops::Range<usize>| {
+        let frame = (grid(), prop::collection::vec(stretch(), lights));
+        frame.new_tree(&mut runner).unwrap().current()
+    };
+    let mut culler = Culler::new();
+    let mut batch = LightBatch::new();
+    let mut lists = LightLists::new();
+    for lights in [300..301, 20..21, 0..1, 500..501, 3..4] {
+        let (grid, shapes) = draw(lights);
+        let tiles = grid.tile_depths();
+        batch.clear();
+        batch.extend((0..).zip(shapes));
+        culler.cull(&batch, &tiles, &mut lists).unwrap();
+        let mut fresh = LightLists::new();
+        Culler::new()
+            .cull(&batch.clone(), &tiles, &mut fresh)
+            .unwrap();
+        assert_eq!(lists.ranges(), fresh.ranges());
+        assert_eq!(lists.numbers(), fresh.numbers());
+    }
+}
+
+#[test]
+fn nothing_is_found_where_there_is_nothing() {
+    let camera = camera();
+    let tiles = |intervals| {
+        let rectangle = |_| {
+            camera.tile_rectangle(
+                [1, 1],
+                PixelRectangle {
+                    min: [0; 2],
+                    max: [1; 2],
+                },
+            )
+        };
+        TileDepths::new([3, 2], intervals, rectangle)
+    };
+    assert!(matches!(tiles(0), Err(Error::Size { .. })));
+    assert!(tiles(u32::MAX).is_err());
+
+    let everywhere = Sphere::new(Vec3::ZERO, 1e30).unwrap();
+    let mut batch = LightBatch::new();
+    let mut lists = LightLists::new();
+    let mut tiles = tiles(2).unwrap();
+    assert!(tiles.is_empty());
+    let mut culler = Culler::new();
+    culler.cull(&batch, &tiles, &mut lists).unwrap();
+    assert!(lists.is_empty() && lists.of([0, 0], 0).is_empty());
+
+    // Light, but no surfaces.
+    batch.push(5, &CameraSphere::new(&everywhere, &camera).unwrap());
+    let counters = culler.cull(&batch, &tiles, &mut lists).unwrap();
+    assert_eq!((counters.tile_tests, counters.pairs), (0, 0));
+
+    tiles.set([2, 1], [None, DepthInterval::new(1.0, 2.0).ok()]);
+    culler.cull(&batch, &tiles, &mut lists).unwrap();
+    assert_eq!(lists.numbers(), [5]);
+    assert_eq!(lists.of([2, 1], 1), [5]);
+    for (tile, interval) in [
+        ([2, 1], 0),
+        ([2, 1], 2),
+        ([3, 1], 0),
+        ([0, 9], 0),
+        ([1, 1], 1),
+    ] {
+        assert!(lists.of(tile, interval).is_empty());
+    }
+}
+
+/// The lights in all near intervals together, and in all far ones.
+fn hits(frame: &[Subregion], depths: Depths) -> [usize; 2] {
+    let camera = workload::camera();
+    let mut culler = Culler::new();
+    let mut lists = LightLists::new();
+    let mut hits = [0; 2];
+    for subregion in frame {
+        let stretches = subregion.lights.iter().map(|light| light.stretch(&camera));
+        let mut batch = LightBatch::new();
+        batch.extend((0..).zip(stretches));
+        culler
+            .cull(&batch, &subregion.tile_depths(depths), &mut lists)
+            .unwrap();
+        for (slot, [start, end]) in lists.ranges().iter().enumerate() {
+            hits[slot % 2] += (end - start) as usize;
+        }
+    }
+    hits
+}
+
+/// The numbers are those of the box test without any margin for rounding.
+#[test]
+fn finds_the_known_lights_of_the_fixed_workloads() {
+    let frame = workload::frame();
+    let kinds: [(Depths, [usize; 2]); 2] = [
+        (|tile| tile.scattered, [70_597, 118_590]),
+        (|tile| tile.coherent, [4_902, 6_462]),
+    ];
+    for (depths, known) in kinds {
+        let found = hits(&frame, depths);
+        for (found, known) in found.into_iter().zip(known) {
+            assert!(
+                known <= found && found <= known + known / 200,
+                "{found}, known {known}"
+            );
+        }
+    }
+}
