@@ -26,6 +26,8 @@ mod culler;
 mod filter;
 mod lanes;
 mod lists;
+#[cfg(feature = "rayon")]
+mod parallel;
 mod shape;
 mod tile_depths;
 

@@ -171,6 +171,10 @@ impl Area {
         [0, 1].map(|i| self.max[i] - self.min[i])
     }
 
+    pub fn is_all_of(self, tiles: &TileDepths) -> bool {
+        self.size() == tiles.all().size()
+    }
+
     /// How many times it is cut until its parts have few tiles.
     pub fn levels(self) -> usize {
         let mut levels = 0;
