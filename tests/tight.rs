@@ -58,6 +58,44 @@ fn volume_is_near_the_least_of_the_family() {
     }
 }
 
+/// Volume over that of the smallest ellipsoid around the lobe (F = 1), found by Khachiyan's algorithm and
+/// given in units of r′³: incidence in and at 45° to the tangent's plane, and across it.
+#[test]
+fn ellipsoid_of_the_grain_is_near_the_smallest() {
+    let azimuths = [0.0_f32, 45.0, 90.0];
+    let smallest = [
+        ([0.5, 0.25], 30.0_f32, [7.8008e-2, 7.9746e-2, 7.8197e-2]),
+        ([0.5, 0.25], 60.0, [6.5289e-2, 6.3357e-2, 3.887e-2]),
+        ([0.5, 0.25], 85.0, [5.6395e-2, 5.1683e-2, 2.3784e-2]),
+        ([0.4, 0.05], 30.0, [1.1493e-2, 2.0654e-2, 2.3396e-2]),
+        ([0.4, 0.05], 60.0, [9.1355e-3, 2.2003e-2, 1.3118e-2]),
+        ([0.4, 0.05], 85.0, [7.2146e-3, 1.9614e-2, 1.1053e-3]),
+        ([0.1, 0.02], 30.0, [9.0685e-4, 9.9082e-4, 1.0139e-3]),
+        ([0.1, 0.02], 60.0, [5.7025e-4, 6.747e-4, 5.7505e-4]),
+        ([0.1, 0.02], 85.0, [2.018e-4, 3.3763e-4, 1.0026e-4]),
+    ];
+    let mut sum = 0.0;
+    for (roughness, degrees, row) in smallest {
+        for (azimuth, smallest) in azimuths.into_iter().zip(row) {
+            let (angle, azimuth) = (degrees.to_radians(), azimuth.to_radians());
+            let along = Vec3::new(azimuth.cos(), azimuth.sin(), 0.0);
+            let incoming = along * angle.sin() + Vec3::Z * angle.cos();
+            let lit = generators::Lit::new(Vector::from(Vec3::Z), incoming.into());
+            let lobe = grained(roughness, NoFresnel, &lit, Vector::from(Vec3::X));
+            let [alpha_x, alpha_y] = roughness.map(f64::from);
+            let (g1, mu) = (smith_of_grain(&lobe, &lit), lit.surface.incident_cosine());
+            let scale = (g1 / (4.0 * PI * mu * alpha_x * alpha_y)).sqrt();
+            let ratio = volume(lobe.unit_bound().semi_axes()) / (smallest * scale.powi(3));
+            assert!(
+                ratio > 0.999 && ratio < 1.5,
+                "α = {roughness:?}, {degrees}°, {azimuth}: {ratio} of the smallest"
+            );
+            sum += ratio;
+        }
+    }
+    assert!(sum / 27.0 < 1.12, "{} on average", sum / 27.0);
+}
+
 /// The largest F·G2/G1 over the hemisphere, by search in the plane of incidence and head-on.
 fn exact_max_reflected(roughness: f32, fresnel: Fresnel, masking: Masking, mu: f64) -> f64 {
     let (alpha, angle) = (f64::from(roughness), mu.min(1.0).acos());

@@ -284,7 +284,7 @@ fn masking(rng: &mut Rng) -> Masking {
 }
 
 /// `brdf` with another tangent, if it has one that is nearly parallel to `normal`.
-fn laid_on(normal: Direction, brdf: Brdf) -> Brdf {
+pub fn laid_on(normal: Direction, brdf: Brdf) -> Brdf {
     let normal = Vector::from(*normal);
     match brdf {
         Brdf::Anisotropic {
