@@ -55,9 +55,9 @@ impl Surface {
         roughness: [f32; 2],
         tangent: Direction,
     ) -> impl Iterator<Item = Vector> {
+        const NUMBER: u32 = 300;
         let [along, across] = SurfaceFrame::new(self.normal, tangent).tangents;
         let [alpha_x, alpha_y] = roughness.map(f64::from);
-        const NUMBER: u32 = 300;
         (0..NUMBER).map(move |i| {
             let height = (f64::from(i) + 0.5) / f64::from(NUMBER);
             let (radius, azimuth) = ((1.0 - height * height).sqrt(), 2.399_963 * f64::from(i));
