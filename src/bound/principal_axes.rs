@@ -17,10 +17,12 @@ pub(super) fn principal_axes<const N: usize>(mut rows: [[f64; N]; 3]) -> ([Vecto
     let mut axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for (i, j) in [PAIRS; SWEEPS].into_iter().flatten() {
         let in_common = dot(rows[i], rows[j]);
-        if in_common == 0.0 {
+        let squares = [i, j].map(|k| dot(rows[k], rows[k]));
+        // Too little in common to count.
+        if in_common * in_common <= 1e-20 * squares[0] * squares[1] {
             continue;
         }
-        let cotangent = (dot(rows[j], rows[j]) - dot(rows[i], rows[i])) / (2.0 * in_common);
+        let cotangent = (squares[1] - squares[0]) / (2.0 * in_common);
         // Of the two angles the one below 45°.
         let root = math::length([1.0, cotangent, 0.0]);
         let tangent = 1.0_f64.copysign(cotangent) / (cotangent.abs() + root);
