@@ -10,7 +10,7 @@
 //!
 //! | step | from | to | items |
 //! |---|---|---|---|
-//! | lobe | surface, incoming direction | what it reflects | [`GgxLobe`], [`LambertLobe`], [`ConstantLobe`] |
+//! | lobe | surface, incoming direction | what it reflects | [`GgxLobe`], [`AnisotropicGgxLobe`], [`LambertLobe`], [`ConstantLobe`] |
 //! | light | lobe, position, flux | radiant intensity | [`Vpl`] |
 //! | range | intensity, ξ | probability, range, estimate | [`Roulette`], [`Xi`] |
 //! | bound | lobe, range | shape around all it may light | [`Spheroid`], [`Sphere`], [`Ellipsoid`] |
@@ -87,7 +87,7 @@
 //! **If a tile, as the `f32` numbers of its rectangle and depth interval define it, contains a point p
 //! with ‖p − q‖ ≤ l_max(ω_o), in exact arithmetic on the `f32` numbers that were given, then
 //! [`touches`](TileTest::touches) is true** of the stretched [`Spheroid`], of the tight ellipsoid, of
-//! both of the spheroid's spheres, of a diffuse or constant light's [`Sphere`], and of the
+//! that of an anisotropic lobe, of both of the spheroid's spheres, of a diffuse or constant light's [`Sphere`], and of the
 //! [`HalfSpace`] above the light's surface. Directions stand for the unit vectors along them, and a
 //! point of the world for its image under the camera's matrix.
 //!
@@ -150,11 +150,12 @@ mod range;
 mod stretch;
 mod tile;
 mod vpl;
+mod wide;
 
 pub use bound::{Bound, Bounded, Ellipsoid, Sphere, Spheroid};
 pub use brdf::{
-    Conductor, ConstantLobe, Dielectric, Fresnel, Ggx, GgxLobe, HeightCorrelated, LambertLobe,
-    Lobe, MaskingShadowing, NoFresnel, Schlick, Separable,
+    AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel, Ggx, GgxLobe,
+    HeightCorrelated, LambertLobe, Lobe, MaskingShadowing, NoFresnel, Schlick, Separable,
 };
 pub use camera::Camera;
 #[cfg(feature = "cull")]

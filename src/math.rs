@@ -102,11 +102,16 @@ pub(crate) fn cross(a: Vec3, b: Vec3) -> [f64; 3] {
 /// ‖v‖. The squares of an `f32` cross product do not underflow in `f64`.
 #[inline]
 pub(crate) fn length([x, y, z]: [f64; 3]) -> f64 {
-    let squared = x * x + y * y + z * z;
+    sqrt_of_wide(x * x + y * y + z * z)
+}
+
+/// √x, correctly rounded on either backend.
+#[inline]
+pub(crate) fn sqrt_of_wide(x: f64) -> f64 {
     #[cfg(feature = "std")]
     #[expect(clippy::disallowed_methods, reason = "this is the backend")]
-    let root = squared.sqrt();
+    let root = x.sqrt();
     #[cfg(all(feature = "libm", not(feature = "std")))]
-    let root = libm::sqrt(squared);
+    let root = libm::sqrt(x);
     root
 }
