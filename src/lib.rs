@@ -119,6 +119,7 @@
 //! - Heitz 2014, *Understanding the masking-shadowing function in microfacet-based BRDFs*.
 //! - Jarzynski & Olano 2020, *Hash functions for GPU rendering*.
 //! - Keller 1997, *Instant radiosity*.
+//! - Olsson, Billeter & Assarsson 2012, *Clustered deferred and forward shading*.
 //! - Schlick 1994, *An inexpensive BRDF model for physically-based rendering*.
 //! - Segovia et al. 2006, *Non-interleaved deferred shading of interleaved sample patterns*.
 //! - Stewart 2015, *Compute-based tiled culling*.

@@ -28,6 +28,16 @@ pub(crate) fn tan(x: f32) -> f32 {
     tangent
 }
 
+/// x^y for x > 0, to the accuracy of the backend.
+pub(crate) fn power(x: f32, y: f32) -> f32 {
+    #[cfg(feature = "std")]
+    #[expect(clippy::disallowed_methods, reason = "this is the backend")]
+    let power = x.powf(y);
+    #[cfg(all(feature = "libm", not(feature = "std")))]
+    let power = libm::powf(x, y);
+    power
+}
+
 /// One correctly rounded `f32` operation errs by at most this share of its result: 2⁻²⁴.
 pub(crate) const UNIT_ROUNDOFF: f32 = f32::EPSILON / 2.0;
 

@@ -156,7 +156,7 @@ fn culled_as_one_by_one<T: BatchShape + Send + Sync>(
 }
 
 proptest! {
-    #![proptest_config(cases(256))]
+    #![proptest_config(cases(64))]
 
     #[test]
     fn lists_of_ellipsoids_are_those_of_the_scalar_test(
