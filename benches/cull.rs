@@ -6,6 +6,8 @@
 
 #[path = "cull/baseline.rs"]
 mod baseline;
+#[path = "cull/growth.rs"]
+mod growth;
 #[path = "../tests/workload/mod.rs"]
 mod workload;
 
@@ -75,5 +77,20 @@ fn workloads(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, workloads);
+/// Times are per light of all lists.
+fn growth(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("growth");
+    group.sample_size(10);
+    for scale in [1, 3, 10, 31] {
+        let (batch, tiles) = growth::frame(scale);
+        let (mut culler, mut lists) = (Culler::new(), LightLists::new());
+        let mut cull = || culler.cull(&batch, &tiles, &mut lists).expect("few enough");
+        group.throughput(Throughput::Elements(cull().pairs));
+        let [width, height] = tiles.size();
+        let name = format!("{} lights, {} tiles", batch.len(), width * height);
+        group.bench_function(name, |bencher| bencher.iter(&mut cull));
+    }
+}
+
+criterion_group!(benches, workloads, growth);
 criterion_main!(benches);
