@@ -1,27 +1,20 @@
 //! Which lights may touch which tile.
 
 use rayon::prelude::*;
-use stochastic_light_culling::{DepthInterval, TileTest};
+use stochastic_light_culling::{BatchShape, Culler, Error, LightBatch, LightLists};
 
-use super::Tile;
-use super::bounds::Candidates;
+use super::Tiles;
 
-/// The numbers of the lights, in rising order, that may touch a tile's two depth intervals.
-pub type TileLights = [Vec<u32>; 2];
-
-/// The lists of all `tiles`, from the candidates of each subregion.
-pub fn cull<T: TileTest + Sync>(tiles: &[Tile], candidates: &[Candidates<T>]) -> Vec<TileLights> {
-    let lists = |tile: &Tile| {
-        let candidates = &candidates[tile.subregion as usize];
-        let touching = |depths: DepthInterval| {
-            candidates
-                .iter()
-                .filter(|(_, test)| test.touches(&tile.rectangle, &depths))
-                .map(|(number, _)| *number)
-                .collect()
-        };
-        tile.depths
-            .map(|depths| depths.map_or_else(Vec::new, touching))
+/// The lists of each subregion's tiles, from the lights of each subregion.
+pub fn cull<T: BatchShape + Send + Sync>(
+    tiles: &Tiles,
+    batches: &[LightBatch<T>],
+) -> Result<Vec<LightLists>, Error> {
+    let cull = |culler: &mut Culler<T>, (subregion, batch): (&super::tiles::Subregion, &_)| {
+        let mut lists = LightLists::new();
+        culler.cull(batch, &subregion.depths, &mut lists)?;
+        Ok(lists)
     };
-    tiles.par_iter().map(lists).collect()
+    let subregions = tiles.subregions().par_iter().zip(batches);
+    subregions.map_init(Culler::new, cull).collect()
 }

@@ -109,6 +109,18 @@ impl TileDepths {
         self.around[index] = around;
     }
 
+    /// Which of the intervals of `tile` holds `depth`, the first of them if there are several.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such tile.
+    pub fn interval_of(&self, tile: [u32; 2], depth: f32) -> Option<u32> {
+        let [x, y] = tile.map(|n| n as usize);
+        let mut intervals = self.depths(x, y).iter();
+        let holds = |[near, far]: &[f32; 2]| (*near..=*far).contains(&depth);
+        intervals.position(holds).map(|interval| interval as u32)
+    }
+
     /// Whether no interval of any tile has surfaces.
     pub fn is_empty(&self) -> bool {
         self.around.iter().all(|depths| *depths == NONE)
