@@ -5,16 +5,29 @@ use stochastic_light_culling::{BatchShape, Culler, Error, LightBatch, LightLists
 
 use super::Tiles;
 
-/// The lists of each subregion's tiles, from the lights of each subregion.
-pub fn cull<T: BatchShape + Send + Sync>(
-    tiles: &Tiles,
-    batches: &[LightBatch<T>],
-) -> Result<Vec<LightLists>, Error> {
-    let cull = |culler: &mut Culler<T>, (subregion, batch): (&super::tiles::Subregion, &_)| {
-        let mut lists = LightLists::new();
-        culler.cull(batch, &subregion.depths, &mut lists)?;
-        Ok(lists)
-    };
-    let subregions = tiles.subregions().par_iter().zip(batches);
-    subregions.map_init(Culler::new, cull).collect()
+/// A culler for each subregion, with the lists that it fills: memory that is used frame after frame.
+pub struct Cullers<T: BatchShape> {
+    cullers: Vec<Culler<T>>,
+    pub lists: Vec<LightLists>,
+}
+
+impl<T: BatchShape + Send + Sync> Cullers<T> {
+    pub fn new(tiles: &Tiles) -> Self {
+        let count = tiles.subregions().len();
+        Self {
+            cullers: vec![Culler::new(); count],
+            lists: vec![LightLists::new(); count],
+        }
+    }
+
+    /// The lists of each subregion's tiles, from the lights of each subregion.
+    pub fn cull(&mut self, tiles: &Tiles, batches: &[LightBatch<T>]) -> Result<(), Error> {
+        let results = self.cullers.par_iter_mut().zip(&mut self.lists);
+        let frame = tiles.subregions().par_iter().zip(batches);
+        results
+            .zip(frame)
+            .try_for_each(|((culler, lists), (subregion, batch))| {
+                culler.cull(batch, &subregion.depths, lists).map(drop)
+            })
+    }
 }

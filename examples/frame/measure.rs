@@ -5,7 +5,7 @@ use std::time::Instant;
 use stochastic_light_culling::{BatchShape, Camera, Error, LambertLobe, Lobe};
 
 use super::bounds::{self, BoundKind, GlossyLight};
-use super::cull::cull;
+use super::cull::Cullers;
 use super::shade::shade;
 use super::{Frame, Light, Shaded, Tiles};
 
@@ -79,9 +79,12 @@ fn measure<L: Lobe + Sync, T: BatchShape + Send + Sync>(
 ) -> Result<Vec<Measured>, Error> {
     let (batches, bound_ms) = timed(|| bounds::batches(lights, &frame.interleave, shape));
     let measured = |tiling: &Tiling| {
-        let (lists, cull_ms) = timed(|| cull(tiling.tiles, &batches));
-        let lists = lists?;
-        let (shaded, shade_ms) = timed(|| shade(frame, tiling, lights, &lists, &done));
+        let mut cullers = Cullers::new(tiling.tiles);
+        // The first frame makes room for the lists. Like any later one, the second does not.
+        cullers.cull(tiling.tiles, &batches)?;
+        let (culled, cull_ms) = timed(|| cullers.cull(tiling.tiles, &batches));
+        culled?;
+        let (shaded, shade_ms) = timed(|| shade(frame, tiling, lights, &cullers.lists, &done));
         Ok(Measured {
             bound,
             refined: tiling.refined,

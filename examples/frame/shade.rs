@@ -98,12 +98,11 @@ fn sums<L: Lobe>(
         }
         sums.evaluated += 1;
         let path = Path::new(light, surface, frame.least_distance_squared);
-        let (roulette, xi) = (&frame.roulette, light.xi);
-        if roulette.accepts(path.intensity, path.distance_squared, xi) {
-            let weight = roulette.weight(path.intensity, path.distance_squared, xi);
-            sums.contributing += 1;
-            sums.irradiance += weight * path.irradiance() * light.tint;
-        }
+        let (intensity, distance_squared) = (path.intensity, path.distance_squared);
+        let radiance = (frame.roulette).estimate(intensity, distance_squared, light.xi);
+        // Zero where the light is not accepted.
+        sums.contributing += u32::from(radiance > 0.0);
+        sums.irradiance += radiance * path.cosine * light.tint;
     }
     sums
 }
@@ -122,7 +121,7 @@ impl Path {
         let to_surface = surface.position - light.vpl.position();
         let true_distance_squared = to_surface.length_squared();
         // Of no length where the two coincide: no direction, hence no light.
-        let direction = to_surface / true_distance_squared.sqrt().max(f32::MIN_POSITIVE);
+        let direction = to_surface * true_distance_squared.sqrt().max(f32::MIN_POSITIVE).recip();
         Self {
             intensity: light.vpl.radiant_intensity(direction),
             distance_squared: true_distance_squared.max(least_distance_squared),
