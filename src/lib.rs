@@ -16,6 +16,7 @@
 //! | bound | lobe, range | shape around all it may light | [`Spheroid`], [`Sphere`], [`Ellipsoid`] |
 //! | stretch | bound, camera | unit sphere | [`Stretch`], [`CameraSphere`], [`HalfSpace`] |
 //! | tile | pixels, depths | touched or not | [`TileGrid`], [`DepthInterval`], [`TileTest`] |
+//! | cull | many lights, many tiles | a list of lights for each tile | `LightBatch`, `TileDepths`, `Culler`, `LightLists` (feature `cull`) |
 //!
 //! Each step can be used alone, and knows nothing of the steps after it.
 //!
@@ -74,7 +75,8 @@
 //! # Errors, NaN and the hot loop
 //!
 //! Constructors check, and say what is wrong and with which value ([`Error`]). What they return is
-//! valid: nothing after them panics, allocates or makes NaN from finite arguments. A light that
+//! valid: nothing after them panics, allocates or makes NaN from finite arguments; but for culling, which
+//! allocates in its first frame. A light that
 //! reflects nothing, because its flux is zero or it is lit from behind, is no error but has an empty
 //! range; it drops out before any tile is looked at ([`Stretch::new`] gives `None`).
 //!
@@ -112,6 +114,9 @@
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: the same from the [libm](https://docs.rs/libm) crate. The crate is `no_std` without
 //!   `std`. One of the two is needed; with both, `std` is used.
+//! - `cull`: many lights against many tiles, in vectors as wide as the processor has. Needs an
+//!   allocator, and Rust 1.89.
+//! - `rayon`: the same on many cores. Brings `cull` and `std`.
 //!
 //! # Sources
 //!

@@ -285,3 +285,23 @@ fn finds_the_known_lights_of_the_fixed_workloads() {
         }
     }
 }
+
+#[test]
+fn later_frames_allocate_nothing() {
+    let frame = workload::frame();
+    let subregion = &frame[0];
+    let tiles = subregion.tile_depths(|tile| tile.scattered);
+    let camera = workload::camera();
+    let (mut batch, mut culler, mut lists) = (LightBatch::new(), Culler::new(), LightLists::new());
+    let mut draw_frame = || {
+        batch.clear();
+        for (number, light) in (0..).zip(&subregion.lights) {
+            batch.push(number, &light.stretch(&camera));
+        }
+        culler.cull(&batch, &tiles, &mut lists).unwrap();
+    };
+    let first = allocation_counter::measure(&mut draw_frame);
+    assert!(first.count_total > 0, "nothing is counted");
+    let second = allocation_counter::measure(&mut draw_frame);
+    assert_eq!(second.count_total, 0);
+}
