@@ -149,8 +149,8 @@ mod vpl;
 
 pub use bound::{Bound, Bounded, Ellipsoid, Sphere, Spheroid};
 pub use brdf::{
-    Conductor, ConstantLobe, Dielectric, Fresnel, Ggx, GgxLobe, HeightCorrelated, LambertLobe,
-    Lobe, MaskingShadowing, NoFresnel, Schlick, Separable,
+    Conductor, ConstantLobe, Dielectric, Fresnel, FresnelMajorant, Ggx, GgxLobe, HeightCorrelated,
+    LambertLobe, Lobe, MaskingShadowing, NoFresnel, Schlick, Separable,
 };
 pub use camera::Camera;
 pub use direction::Direction;

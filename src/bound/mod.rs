@@ -8,10 +8,11 @@ mod constant;
 mod ellipsoid;
 mod ggx;
 mod lambert;
+mod smallest;
 mod sphere;
 mod spheroid;
 mod support;
-mod triaxial;
+mod table;
 
 pub use ellipsoid::Ellipsoid;
 pub use sphere::Sphere;

@@ -12,7 +12,7 @@ mod masking;
 pub use conductor::Conductor;
 pub use constant::ConstantLobe;
 pub use dielectric::Dielectric;
-pub use fresnel::{Fresnel, NoFresnel, Schlick};
+pub use fresnel::{Fresnel, FresnelMajorant, NoFresnel, Schlick};
 pub use ggx::Ggx;
 pub use ggx_lobe::GgxLobe;
 pub use lambert::LambertLobe;

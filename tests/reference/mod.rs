@@ -11,10 +11,12 @@ pub mod exact;
 pub mod fresnel;
 pub mod lobe;
 pub mod shape;
+pub mod smallest;
 pub mod vector;
 
 pub use camera::View;
 pub use fresnel::Fresnel;
 pub use lobe::{Brdf, Masking, Surface, ggx_ndf, smith_g1, smith_g2};
 pub use shape::Shape;
+pub use smallest::Smallest;
 pub use vector::Vector;
