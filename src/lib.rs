@@ -160,8 +160,9 @@ mod wide;
 
 pub use bound::{Bound, Bounded, Ellipsoid, Sphere, Spheroid};
 pub use brdf::{
-    AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel, Ggx, GgxLobe,
-    HeightCorrelated, LambertLobe, Lobe, MaskingShadowing, NoFresnel, Schlick, Separable,
+    AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel,
+    FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, LambertLobe, Lobe, MaskingShadowing,
+    NoFresnel, Schlick, Separable,
 };
 pub use camera::Camera;
 #[cfg(feature = "cull")]
