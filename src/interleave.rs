@@ -17,6 +17,8 @@ use crate::{Error, PixelRectangle};
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::Interleave"))]
 pub struct Interleave {
     image_size: [u32; 2],
     width: u32,
