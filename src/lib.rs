@@ -77,8 +77,8 @@
 //! Constructors check, and say what is wrong and with which value ([`Error`]). What they return is
 //! valid: nothing after them panics, allocates or makes NaN from finite arguments; but for culling, which
 //! allocates in its first frame, and `TileDepths`, which panics if asked about a tile that it does not
-//! have. A light that reflects nothing, because its flux is zero or it is lit from behind, is no error but has an empty
-//! range; it drops out before any tile is looked at ([`Stretch::new`] gives `None`).
+//! have. A light that reflects nothing, because its flux is zero or it is lit from behind, is no error but
+//! has an empty range; it drops out before any tile is looked at ([`Stretch::new`] gives `None`).
 //!
 //! # No light is lost
 //!
