@@ -10,6 +10,8 @@ use crate::{Error, error, math};
 /// Its quasi-convexity in θ_h, which [`maximum`](Fresnel::maximum) needs, is known numerically (a
 /// search over η and κ found no exception), not proved.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::Conductor"))]
 pub struct Conductor {
     index: f32,
     extinction: f32,

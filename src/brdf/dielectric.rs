@@ -11,6 +11,8 @@ use crate::{Error, error, math};
 ///
 /// F increases with θ_h for 2 − √3 ≤ η ≤ 2 + √3, and is quasi-convex for all other η.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::Dielectric"))]
 pub struct Dielectric {
     relative_index: f32,
     majorant: FresnelMajorant,

@@ -98,6 +98,7 @@ impl FresnelMajorant {
 
 /// No Fresnel factor, F = 1: all light is reflected. Costs nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NoFresnel;
 
 impl Fresnel for NoFresnel {
@@ -122,6 +123,8 @@ impl Fresnel for NoFresnel {
 
 /// Schlick's approximation F = F0 + (1 − F0)(1 − cosθ_h)⁵ [Schlick 1994, Eq. 15].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::Schlick"))]
 pub struct Schlick {
     f0: f32,
 }
