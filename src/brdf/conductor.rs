@@ -15,6 +15,7 @@ use crate::{Error, error, math};
 pub struct Conductor {
     index: f32,
     extinction: f32,
+    #[cfg_attr(feature = "serde", serde(skip))]
     majorant: FresnelMajorant,
 }
 

@@ -15,6 +15,7 @@ use crate::{Error, error, math};
 #[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::Dielectric"))]
 pub struct Dielectric {
     relative_index: f32,
+    #[cfg_attr(feature = "serde", serde(skip))]
     majorant: FresnelMajorant,
 }
 
