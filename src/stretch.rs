@@ -143,12 +143,14 @@ fn triangular_stretch(axes: Mat3, semi_axes: Vec3) -> Mat3 {
     let depth_reach = math::sqrt(c_zz);
     // √(A_xx A_yy − A_xy²): of √det A, the factor 1/(r_min r_max) is in the units chosen.
     let root = depth_reach * (shortest / median(semi_axes));
-    let [(xx, xy), (yx, yy)] = if a_xx > a_yy {
-        let xx = math::sqrt(a_xx);
-        [(xx, a_xy / xx), (0.0, root / xx)]
+    // The longer image first, in the same operations whichever it is.
+    let x_first = a_xx > a_yy;
+    let first = math::sqrt(if x_first { a_xx } else { a_yy });
+    let (mixed, second) = (a_xy / first, root / first);
+    let [xx, xy, yx, yy] = if x_first {
+        [first, mixed, 0.0, second]
     } else {
-        let yy = math::sqrt(a_yy);
-        [(root / yy, 0.0), (a_xy / yy, yy)]
+        [second, 0.0, mixed, first]
     };
     let shear = Vec3::new(xx * c_xz + xy * c_yz, yx * c_xz + yy * c_yz, 0.0) / c_zz;
     let m = shortest / (longest * depth_reach);
