@@ -145,12 +145,20 @@ impl Camera {
         self.rotation.transpose() * (point - self.translation)
     }
 
+    /// What the sums of [`to_camera_space`](Self::to_camera_space) lose, as a share of their terms.
+    pub(crate) const ROUNDINGS_OF_TERMS: f32 = 8.0 * f64::EPSILON as f32;
+
     /// What [`to_camera_space`](Self::to_camera_space) can be off by before it rounds, in length: the
     /// rounding of `f64` in terms this large.
     pub(crate) fn rounding_of_terms(&self, parts: [Vec3; 2]) -> f32 {
-        const ROUNDINGS: f32 = 8.0 * f64::EPSILON as f32;
         let terms = parts[0].abs() + parts[1].abs() + self.translation.abs();
-        ROUNDINGS * terms.element_sum()
+        Self::ROUNDINGS_OF_TERMS * terms.element_sum()
+    }
+
+    /// Where the world's origin is in camera space.
+    #[cfg(feature = "cull")]
+    pub(crate) fn translation(&self) -> Vec3 {
+        self.translation
     }
 
     /// How far the rotation is from orthonormal, element by element.

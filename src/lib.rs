@@ -158,7 +158,10 @@ pub use brdf::{
 };
 pub use camera::Camera;
 #[cfg(feature = "cull")]
-pub use cull::{BatchShape, CullCounters, Culler, LightBatch, LightLists, TileDepths};
+pub use cull::{
+    BatchBound, BatchBuilder, BatchLobe, BatchShape, CullCounters, Culler, DepthOrder, LightBatch,
+    LightLists, TileDepths,
+};
 pub use direction::Direction;
 pub use error::Error;
 pub use half_space::HalfSpace;

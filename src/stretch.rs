@@ -113,6 +113,12 @@ impl Stretch {
         })
     }
 
+    /// The stretch with these M and Mc′.
+    #[cfg(feature = "cull")]
+    pub(crate) fn from_parts(matrix: Mat3, center: Vec3) -> Self {
+        Self { matrix, center }
+    }
+
     /// M: the columns are the images of the axes of camera space. Its third row is (0, 0, m), and one
     /// of its other two elements off the diagonal of the first two columns is zero.
     pub fn matrix(&self) -> Mat3 {
@@ -202,6 +208,15 @@ impl CameraSphere {
             center,
             radius_squared: enlarged * enlarged,
         })
+    }
+
+    /// The sphere with this centre and squared radius.
+    #[cfg(feature = "cull")]
+    pub(crate) fn from_parts(center: Vec3, radius_squared: f32) -> Self {
+        Self {
+            center,
+            radius_squared,
+        }
     }
 
     /// The centre in camera space.

@@ -104,6 +104,18 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         self.incident_cosine
     }
 
+    /// √(kμ² + α²), the root of G1(μ).
+    #[cfg(feature = "cull")]
+    pub(crate) fn incident_root(&self) -> f32 {
+        self.incident_root
+    }
+
+    /// F.
+    #[cfg(feature = "cull")]
+    pub(crate) fn fresnel(&self) -> F {
+        self.fresnel
+    }
+
     /// F_max, the largest Fresnel factor that any direction above the surface can have, rounded up.
     ///
     /// The half angle reaches ½ arccos μ + π/4, whose cosine is μ/√(2(1 + √(1−μ²))). The source's
