@@ -11,9 +11,10 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use stochastic_light_culling::{
-    Bound, Bounded, Camera, CameraSphere, Conductor, DepthInterval, Dielectric, Direction,
-    Ellipsoid, Fresnel, Ggx, GgxLobe, Interleave, LambertLobe, Lobe, NoFresnel, PixelRectangle,
-    Roulette, Schlick, Stretch, TileGrid, TileTest, Vpl, Xi,
+    AnisotropicGgx, AnisotropicGgxLobe, Bound, Bounded, Camera, CameraSphere, Conductor,
+    DepthInterval, Dielectric, Direction, Ellipsoid, Fresnel, Ggx, GgxLobe, Interleave,
+    LambertLobe, Lobe, NoFresnel, PixelRectangle, Roulette, Schlick, Stretch, TileGrid, TileTest,
+    Vpl, Xi,
     glam::{Mat3, Vec3},
     stretch_matrix, stretch_rotation,
 };
@@ -48,6 +49,21 @@ fn glossy_lights<F: Fresnel>(fresnel: F) -> Vec<Vpl<GgxLobe<F>>> {
     (0..LIGHTS)
         .map(|light| glossy_light(light, fresnel))
         .collect()
+}
+
+fn brushed_lights() -> Vec<Vpl<AnisotropicGgxLobe<Schlick>>> {
+    let fresnel = Schlick::new(0.9).expect("in range");
+    let light = |light| {
+        let like = glossy_light(light, fresnel);
+        let (normal, incoming) = (like.lobe().normal(), like.lobe().incoming());
+        let along = like.lobe().ggx().roughness();
+        let brushed = AnisotropicGgx::new(along, 0.3 * along).expect("in range");
+        let tangent = direction(random_vector(light, 9));
+        let lobe = AnisotropicGgxLobe::new(brushed, fresnel, normal, tangent, incoming)
+            .expect("random vectors are not parallel");
+        Vpl::new(like.position(), 1.0, lobe).expect("in range")
+    };
+    (0..LIGHTS).map(light).collect()
 }
 
 fn diffuse_lights() -> Vec<Vpl<LambertLobe>> {
@@ -167,6 +183,12 @@ fn bound(criterion: &mut Criterion) {
     per_item(&mut group, "tight ellipsoid, Schlick", &metal, |light| {
         light.lobe().tight_bound()
     });
+    per_item(
+        &mut group,
+        "anisotropic, Schlick",
+        &brushed_lights(),
+        |light| light.lobe().unit_bound(),
+    );
     per_item(&mut group, "extent along a direction", &metal, |light| {
         light.lobe().extent(Direction::X)
     });

@@ -22,7 +22,7 @@ use std::{fs, io};
 use stochastic_light_culling::{Camera, Error, Interleave, TileGrid, glam::Vec3};
 
 use arguments::{Arguments, ReferenceKind};
-use frame::{Frame, Lights, Measured, Reference, Tile, timed};
+use frame::{Frame, Lights, Measured, Reference, Tiles, Tiling, timed};
 use output::{Exposure, Request, Results, Row, progress};
 use scene::{LitPoints, Scene, SurfaceBuffer, Tracer};
 
@@ -52,19 +52,23 @@ fn render(arguments: &Arguments) -> Result<(), String> {
     });
     let points = points.map_err(said)?;
     let lights = Lights::new(&points, &interleave, arguments.seed).map_err(said)?;
-    let tiles = Tile::all(&surfaces, &camera, &interleave, arguments.tile).map_err(said)?;
+    let [tiles, pixels] =
+        [arguments.tile, 1].map(|size| Tiles::new(&surfaces, &camera, &interleave, size));
+    let (tiles, pixels) = (tiles.map_err(said)?, pixels.map_err(said)?);
+    let tilings =
+        [(&tiles, false), (&pixels, true)].map(|(tiles, refined)| Tiling { tiles, refined });
     let frame = Frame {
         surfaces: &surfaces,
-        tiles: &tiles,
         interleave,
         roulette: arguments.delta,
         least_distance_squared: 4.0 * points.footprint,
     };
 
-    let (glossy, diffuse) = measure(arguments, &frame, &camera, &lights)?;
+    let (glossy, diffuse) = measure(arguments, &frame, &tilings, &camera, &lights)?;
     let mut steps = vec![("G-buffer".into(), surfaces_ms), ("VPLs".into(), points_ms)];
     let bounds = glossy
         .iter()
+        .filter(|measured| !measured.refined)
         .map(|m| (format!("bound {}", m.bound.name()), m.bound_ms));
     steps.extend(bounds);
     steps.push(("bound diffuse".into(), diffuse.bound_ms));
@@ -117,17 +121,23 @@ fn make_folder(folder: &Path) -> Result<(), String> {
 fn measure(
     arguments: &Arguments,
     frame: &Frame,
+    tilings: &[Tiling; 2],
     camera: &Camera,
     lights: &Lights,
 ) -> Result<(Vec<Measured>, Measured), String> {
+    let said = |error: Error| error.to_string();
     let bounds = arguments.bounds();
-    let bar = progress("shading", frame.tiles.len() * (bounds.len() + 1));
+    let runs = tilings.len() * bounds.len() + 1;
+    let bar = progress("shading", frame.interleaved_rows().len() * runs);
     let done = || bar.inc(1);
-    let glossy: Vec<Measured> = bounds
-        .into_iter()
-        .map(|bound| frame::measure_glossy(frame, camera, &lights.glossy, bound, done))
-        .collect();
-    let diffuse = frame::measure_diffuse(frame, camera, &lights.diffuse, done);
+    let mut glossy = Vec::new();
+    for bound in bounds {
+        let lights = &lights.glossy;
+        let measured = frame::measure_glossy(frame, tilings, camera, lights, bound, done);
+        glossy.extend(measured.map_err(said)?);
+    }
+    let diffuse = frame::measure_diffuse(frame, &tilings[..1], camera, &lights.diffuse, done);
+    let diffuse = diffuse.map_err(said)?.remove(0);
     bar.finish_and_clear();
 
     // Which lights are accepted does not depend on what encloses them, or a bound has lost one.
@@ -219,7 +229,8 @@ fn write_pictures(
         &output::tone_mapped(size, &image, exposure),
     )?;
     for measured in glossy {
-        let name = format!("lights-{}.png", measured.bound.name());
+        let refined = if measured.refined { "-refined" } else { "" };
+        let name = format!("lights-{}{refined}.png", measured.bound.name());
         let map = output::heat_map(size, &measured.shaded.evaluated);
         output::write_png(folder, &name, &map)?;
     }
@@ -237,6 +248,7 @@ fn row(surfaces: &SurfaceBuffer, measured: &Measured, rmse: Option<f64>) -> Row 
     let shaded = &measured.shaded;
     Row {
         bound: measured.bound.name(),
+        refined: measured.refined,
         lights_per_pixel: frame::mean_over_surfaces(surfaces, &shaded.evaluated),
         contributing_per_pixel: frame::mean_over_surfaces(surfaces, &shaded.contributing),
         cull_ms: measured.cull_ms,

@@ -10,12 +10,13 @@
 //!
 //! | step | from | to | items |
 //! |---|---|---|---|
-//! | lobe | surface, incoming direction | what it reflects | [`GgxLobe`], [`LambertLobe`], [`ConstantLobe`] |
+//! | lobe | surface, incoming direction | what it reflects | [`GgxLobe`], [`AnisotropicGgxLobe`], [`LambertLobe`], [`ConstantLobe`] |
 //! | light | lobe, position, flux | radiant intensity | [`Vpl`] |
 //! | range | intensity, ξ | probability, range, estimate | [`Roulette`], [`Xi`] |
 //! | bound | lobe, range | shape around all it may light | [`Spheroid`], [`Sphere`], [`Ellipsoid`] |
 //! | stretch | bound, camera | unit sphere | [`Stretch`], [`CameraSphere`], [`HalfSpace`] |
 //! | tile | pixels, depths | touched or not | [`TileGrid`], [`DepthInterval`], [`TileTest`] |
+//! | cull | many lights, many tiles | a list of lights for each tile | `LightBatch`, `TileDepths`, `Culler`, `LightLists` (feature `cull`) |
 //!
 //! Each step can be used alone, and knows nothing of the steps after it.
 //!
@@ -74,7 +75,8 @@
 //! # Errors, NaN and the hot loop
 //!
 //! Constructors check, and say what is wrong and with which value ([`Error`]). What they return is
-//! valid: nothing after them panics, allocates or makes NaN from finite arguments. A light that
+//! valid: nothing after them panics, allocates or makes NaN from finite arguments; but for culling, which
+//! allocates in its first frame. A light that
 //! reflects nothing, because its flux is zero or it is lit from behind, is no error but has an empty
 //! range; it drops out before any tile is looked at ([`Stretch::new`] gives `None`).
 //!
@@ -87,7 +89,7 @@
 //! **If a tile, as the `f32` numbers of its rectangle and depth interval define it, contains a point p
 //! with ‖p − q‖ ≤ l_max(ω_o), in exact arithmetic on the `f32` numbers that were given, then
 //! [`touches`](TileTest::touches) is true** of the stretched [`Spheroid`], of the tight ellipsoid, of
-//! both of the spheroid's spheres, of a diffuse or constant light's [`Sphere`], and of the
+//! that of an anisotropic lobe, of both of the spheroid's spheres, of a diffuse or constant light's [`Sphere`], and of the
 //! [`HalfSpace`] above the light's surface. Directions stand for the unit vectors along them, and a
 //! point of the world for its image under the camera's matrix.
 //!
@@ -112,6 +114,9 @@
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: the same from the [libm](https://docs.rs/libm) crate. The crate is `no_std` without
 //!   `std`. One of the two is needed; with both, `std` is used.
+//! - `cull`: many lights against many tiles, in vectors as wide as the processor has. Needs an
+//!   allocator, and Rust 1.89.
+//! - `rayon`: the same on many cores. Brings `cull` and `std`.
 //!
 //! # Sources
 //!
@@ -119,6 +124,7 @@
 //! - Heitz 2014, *Understanding the masking-shadowing function in microfacet-based BRDFs*.
 //! - Jarzynski & Olano 2020, *Hash functions for GPU rendering*.
 //! - Keller 1997, *Instant radiosity*.
+//! - Olsson, Billeter & Assarsson 2012, *Clustered deferred and forward shading*.
 //! - Schlick 1994, *An inexpensive BRDF model for physically-based rendering*.
 //! - Segovia et al. 2006, *Non-interleaved deferred shading of interleaved sample patterns*.
 //! - Stewart 2015, *Compute-based tiled culling*.
@@ -150,11 +156,12 @@ mod range;
 mod stretch;
 mod tile;
 mod vpl;
+mod wide;
 
 pub use bound::{Bound, Bounded, Ellipsoid, Sphere, Spheroid};
 pub use brdf::{
-    Conductor, ConstantLobe, Dielectric, Fresnel, Ggx, GgxLobe, HeightCorrelated, LambertLobe,
-    Lobe, MaskingShadowing, NoFresnel, Schlick, Separable,
+    AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel, Ggx, GgxLobe,
+    HeightCorrelated, LambertLobe, Lobe, MaskingShadowing, NoFresnel, Schlick, Separable,
 };
 pub use camera::Camera;
 #[cfg(feature = "cull")]

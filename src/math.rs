@@ -28,6 +28,16 @@ pub(crate) fn tan(x: f32) -> f32 {
     tangent
 }
 
+/// x^y for x > 0, to the accuracy of the backend.
+pub(crate) fn power(x: f32, y: f32) -> f32 {
+    #[cfg(feature = "std")]
+    #[expect(clippy::disallowed_methods, reason = "this is the backend")]
+    let power = x.powf(y);
+    #[cfg(all(feature = "libm", not(feature = "std")))]
+    let power = libm::powf(x, y);
+    power
+}
+
 /// One correctly rounded `f32` operation errs by at most this share of its result: 2⁻²⁴.
 pub(crate) const UNIT_ROUNDOFF: f32 = f32::EPSILON / 2.0;
 
@@ -102,11 +112,16 @@ pub(crate) fn cross(a: Vec3, b: Vec3) -> [f64; 3] {
 /// ‖v‖. The squares of an `f32` cross product do not underflow in `f64`.
 #[inline]
 pub(crate) fn length([x, y, z]: [f64; 3]) -> f64 {
-    let squared = x * x + y * y + z * z;
+    sqrt_of_wide(x * x + y * y + z * z)
+}
+
+/// √x, correctly rounded on either backend.
+#[inline]
+pub(crate) fn sqrt_of_wide(x: f64) -> f64 {
     #[cfg(feature = "std")]
     #[expect(clippy::disallowed_methods, reason = "this is the backend")]
-    let root = squared.sqrt();
+    let root = x.sqrt();
     #[cfg(all(feature = "libm", not(feature = "std")))]
-    let root = libm::sqrt(squared);
+    let root = libm::sqrt(x);
     root
 }

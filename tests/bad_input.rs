@@ -1,8 +1,9 @@
 //! Constructors refuse what they cannot use, and say what it was.
 
 use stochastic_light_culling::{
-    Camera, Conductor, ConstantLobe, DepthInterval, Dielectric, Direction, Ellipsoid, Error, Ggx,
-    Interleave, LambertLobe, Roulette, Schlick, Sphere, TileGrid, TileRectangle, Vpl, Xi,
+    AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, DepthInterval, Dielectric,
+    Direction, Ellipsoid, Error, Ggx, Interleave, LambertLobe, NoFresnel, Roulette, Schlick,
+    Sphere, TileGrid, TileRectangle, Vpl, Xi,
     glam::{Mat3, Mat4, Vec2, Vec3, Vec4},
 };
 
@@ -27,6 +28,9 @@ fn refuses<T>(values: &[f32], construct: impl Fn(f32) -> Result<T, Error>) {
 fn numbers_out_of_range() {
     let one = Vec3::ONE;
     refuses(&[0.0, -0.1, 1.000_001, 1e-7, 1e-40], Ggx::new);
+    let rough = [0.0, -0.1, 1.000_001, 1e-7, 1e-40];
+    refuses(&rough, |alpha| AnisotropicGgx::new(alpha, 0.5));
+    refuses(&rough, |alpha| AnisotropicGgx::new(0.5, alpha));
     refuses(&[-1e-9, 1.000_001, -1e-45], Schlick::new);
     refuses(&[0.0, -1.5, 1e-10, 1e10], Dielectric::new);
     refuses(&[0.0, -1.5, 1e10], |eta| Conductor::new(eta, 1.0));
@@ -75,6 +79,34 @@ fn vectors_without_a_direction_or_a_place() {
         let direction = Direction::new(Vec3::new(length, 0.0, length)).unwrap();
         assert!((direction.length() - 1.0).abs() < 1e-6, "{length}");
     }
+}
+
+#[test]
+fn roughness_is_named_by_its_axis() {
+    for (along, across, name) in [(2.0, 0.5, "α_x"), (0.5, 2.0, "α_y")] {
+        let message = AnisotropicGgx::new(along, across).unwrap_err().to_string();
+        assert!(message.contains(name), "{message}");
+    }
+}
+
+#[test]
+fn tangents_along_the_normal() {
+    let ggx = AnisotropicGgx::new(0.1, 0.5).unwrap();
+    let normal = Direction::new(Vec3::new(0.3, -0.2, 0.7)).unwrap();
+    let lobe = |tangent| AnisotropicGgxLobe::new(ggx, NoFresnel, normal, tangent, Direction::Z);
+    // In any direction and length before it was a unit vector, and when nothing but rounding is left.
+    for scale in [1.0, -1.0, 1e-20, 3.3] {
+        let along = Direction::new(scale * *normal).unwrap();
+        let nudged = Direction::new(*along + 1e-7 * Vec3::X).unwrap();
+        for tangent in [along, nudged] {
+            let message = lobe(tangent).unwrap_err().to_string();
+            assert!(message.contains("tangent is"), "{message}");
+            assert!(message.contains(&tangent.to_string()), "{message}");
+        }
+    }
+    // At any other angle it is one.
+    assert!(lobe(Direction::new(*normal + 1e-5 * Vec3::X).unwrap()).is_ok());
+    assert!(lobe(Direction::X).is_ok());
 }
 
 #[test]

@@ -7,9 +7,10 @@ mod reference;
 use generators::{Lit, cases, log_uniform};
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    BatchBuilder, BatchLobe, Bound, Bounded, Camera, CameraSphere, Conductor, ConstantLobe,
-    DepthOrder, Direction, Ellipsoid, Fresnel, Ggx, GgxLobe, LambertLobe, LightBatch,
-    MaskingShadowing, NoFresnel, Roulette, Schlick, Sphere, Spheroid, Stretch, Vpl, Xi, glam::Vec3,
+    AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BatchLobe, Bound, Bounded, Camera,
+    CameraSphere, Conductor, ConstantLobe, DepthOrder, Direction, Ellipsoid, Fresnel, Ggx, GgxLobe,
+    LambertLobe, LightBatch, MaskingShadowing, NoFresnel, Roulette, Schlick, Sphere, Spheroid,
+    Stretch, Vpl, Xi, glam::Vec3,
 };
 
 /// What a light is made of, whatever its lobe.
@@ -240,6 +241,26 @@ proptest! {
     }
 
     #[test]
+    fn anisotropic_lights(frame in frame()) {
+        let lobe = |light: &Parts| {
+            let ggx = AnisotropicGgx::new(light.roughness, light.share.max(1e-3)).unwrap();
+            let tangent = Direction::new(light.lit.normal.any_orthonormal_vector()).unwrap();
+            let Lit { normal, incoming, .. } = light.lit;
+            AnisotropicGgxLobe::new(ggx, light.conductor(), normal, tangent, incoming).unwrap()
+        };
+        let lights: Vec<_> = frame.lights.iter().map(|p| p.vpl(lobe(p))).collect();
+        let stretches: Vec<_> = lights
+            .iter()
+            .map(|(light, xi)| light.bound(&frame.roulette, *xi))
+            .map(|ellipsoid| Stretch::new(&ellipsoid, &frame.camera))
+            .collect();
+        frame.same(&stretches, |builder, range, batch| {
+            let lights = (range.start as u32..).zip(&lights[range]);
+            builder.add(lights.map(|(i, (light, xi))| (i, light, *xi)), batch);
+        })?;
+    }
+
+    #[test]
     fn diffuse_and_point_lights(frame in frame()) {
         frame.same_spheres(|light| LambertLobe::new(light.share, light.lit.normal).unwrap())?;
         frame.same_spheres(|_| ConstantLobe)?;
@@ -318,4 +339,26 @@ fn nothing_comes_of_nothing() {
     let dark = Vpl::new(Vec3::ZERO, 0.0, lobe).unwrap();
     builder.add([(0, &dark, xi), (1, &dark, xi)], &mut batch);
     assert!(batch.is_empty() && batch.iter().next().is_none());
+}
+
+#[test]
+fn later_frames_allocate_nothing() {
+    let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..9.0).unwrap();
+    let lobe = LambertLobe::new(0.5, Direction::Y).unwrap();
+    let light = |i| Vpl::new(Vec3::new(0.0, 1.0, -0.1 * i as f32), 1.0, lobe).unwrap();
+    let lights: Vec<_> = (0..1000).map(light).collect();
+    let (mut order, mut batch) = (DepthOrder::new(), LightBatch::new());
+    let mut draw_frame = || {
+        let builder = BatchBuilder::new(&Roulette::new(0.1).unwrap(), &camera);
+        let order = order.of(lights.iter().map(Vpl::position), &camera);
+        let lights = order
+            .iter()
+            .map(|i| (*i, &lights[*i as usize], Xi::hashed(*i, 0, 0)));
+        batch.clear();
+        builder.add(lights, &mut batch);
+    };
+    let first = allocation_counter::measure(&mut draw_frame);
+    assert!(first.count_total > 0);
+    let second = allocation_counter::measure(&mut draw_frame);
+    assert_eq!(second.count_total, 0);
 }

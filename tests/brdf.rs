@@ -9,8 +9,8 @@ use approx::assert_relative_eq;
 use proptest::prelude::*;
 use reference::{Brdf, Masking, Vector, ggx_ndf, smith_g1, smith_g2};
 use stochastic_light_culling::{
-    Conductor, Dielectric, Fresnel, Ggx, GgxLobe, HeightCorrelated, Lobe, MaskingShadowing,
-    NoFresnel, Schlick, Separable, glam::Vec3,
+    AnisotropicGgx, AnisotropicGgxLobe, Conductor, Dielectric, Direction, Fresnel, Ggx, GgxLobe,
+    HeightCorrelated, Lobe, MaskingShadowing, NoFresnel, Schlick, Separable, glam::Vec3,
 };
 
 const ROUGHNESSES: [f32; 7] = [1e-3, 0.01, 0.05, 0.2, 0.5, 0.9, 1.0];
@@ -19,19 +19,26 @@ const ROUGHNESSES: [f32; 7] = [1e-3, 0.01, 0.05, 0.2, 0.5, 0.9, 1.0];
 /// evenly: tan θ = α tan t.
 fn integrate_over_normals(roughness: f32, rings: u32, g: impl Fn(Vector) -> f64) -> f64 {
     let ggx = Ggx::new(roughness).unwrap();
-    let alpha = f64::from(roughness);
+    integrate_over_facets([roughness; 2], rings, |normal| {
+        f64::from(ggx.ndf_at(normal.to_f32(), Vec3::Z)) * g(normal)
+    })
+}
+
+/// ∫ f(ω) dω over the upper hemisphere, at the normals (α_x tan t cos φ, α_y tan t sin φ, 1).
+fn integrate_over_facets(roughness: [f32; 2], rings: u32, f: impl Fn(Vector) -> f64) -> f64 {
+    let [alpha_x, alpha_y] = roughness.map(f64::from);
     let sectors = 2 * rings;
     let mut sum = 0.0;
     for ring in 0..rings {
-        let t = FRAC_PI_2 * (f64::from(ring) + 0.5) / f64::from(rings);
-        let theta = (alpha * t.tan()).atan();
-        let stretch = alpha / (t.cos().powi(2) + (alpha * t.sin()).powi(2));
+        let tangent = (FRAC_PI_2 * (f64::from(ring) + 0.5) / f64::from(rings)).tan();
         for sector in 0..sectors {
             let phi = TAU * (f64::from(sector) + 0.5) / f64::from(sectors);
-            let (sine, cosine) = theta.sin_cos();
-            let normal = Vector([sine * phi.cos(), sine * phi.sin(), cosine]);
-            let density = f64::from(ggx.ndf_at(normal.to_f32(), Vec3::Z));
-            sum += density * g(normal) * sine * stretch;
+            let (sine, cosine) = phi.sin_cos();
+            let slopes = Vector([alpha_x * tangent * cosine, alpha_y * tangent * sine, 1.0]);
+            // dω = cos³θ dx dy of the slopes, and dx dy = α_xα_y tan t dtan t dφ.
+            let solid_angle =
+                alpha_x * alpha_y * tangent * (1.0 + tangent * tangent) / slopes.length().powi(3);
+            sum += f(slopes.unit()) * solid_angle;
         }
     }
     sum * FRAC_PI_2 / f64::from(rings) * TAU / f64::from(sectors)
@@ -56,6 +63,45 @@ fn masking_fulfils_its_defining_integral() {
             assert_relative_eq!(masking * facing, cosine, max_relative = 1e-3);
         }
     }
+}
+
+const GRAINS: [[f32; 2]; 4] = [[0.5, 0.5], [0.02, 0.3], [1.0, 0.05], [0.1, 0.07]];
+
+#[test]
+fn grained_ndf_projects_to_unit_area_and_masking_fulfils_its_integral() {
+    for roughness in GRAINS {
+        let ggx = AnisotropicGgx::new(roughness[0], roughness[1]).unwrap();
+        let density = |m: Vector| f64::from(ggx.ndf(m.to_f32()));
+        let area = integrate_over_facets(roughness, 300, |m| density(m) * m.0[2]);
+        assert_relative_eq!(area, 1.0, epsilon = 1e-4);
+        for (cosine, azimuth) in [(0.05_f64, 0.3_f64), (0.4, 1.2), (0.8, 2.9), (1.0, 0.0)] {
+            let sine = (1.0 - cosine * cosine).sqrt();
+            let incoming = Vector([sine * azimuth.cos(), sine * azimuth.sin(), cosine]);
+            let facing =
+                integrate_over_facets(roughness, 600, |m| density(m) * m.dot(incoming).max(0.0));
+            let masking = f64::from(ggx.masking(incoming.to_f32()));
+            assert_relative_eq!(masking * facing, cosine, max_relative = 2e-3);
+        }
+    }
+}
+
+#[test]
+fn grained_terms_vanish_below_the_horizon_and_for_nan() {
+    let ggx = AnisotropicGgx::new(0.3, 0.1).unwrap();
+    for below in [Vec3::X, -Vec3::Z, Vec3::NAN, Vec3::ZERO] {
+        assert_eq!(ggx.ndf(below), 0.0);
+        assert_eq!(ggx.masking(below), 0.0);
+        assert_eq!(ggx.masking_shadowing::<Separable>(below, Vec3::Z), 0.0);
+        assert_eq!(
+            ggx.masking_shadowing::<HeightCorrelated>(Vec3::Z, below),
+            0.0
+        );
+    }
+    assert_relative_eq!(
+        ggx.ndf(Vec3::Z),
+        1.0 / (0.03 * PI) as f32,
+        max_relative = 1e-6
+    );
 }
 
 #[test]
@@ -189,6 +235,66 @@ proptest! {
     }
 
     #[test]
+    fn grained_lobe_agrees_with_the_model_and_is_reciprocal(
+        roughness in [generators::up_to_one(0.01), generators::up_to_one(0.01)],
+        f0 in 0.0..=1.0_f32,
+        lit in generators::lit(),
+        tangent in generators::unit_vector(),
+        outgoing in generators::unit_vector(),
+    ) {
+        let ggx = AnisotropicGgx::new(roughness[0], roughness[1]).unwrap();
+        let schlick = Schlick::new(f0).unwrap();
+        let [tangent, outgoing] = [tangent, outgoing].map(|v| Direction::new(v.to_f32()).unwrap());
+        let exact_outgoing = Vector::from(*outgoing).unit();
+        let (normal, mu_o) = (lit.surface.normal, lit.surface.normal.dot(exact_outgoing));
+        // Where μ_o is all rounding, so is what depends on it; and a tangent may be none.
+        if mu_o.abs() < 1e-4 || normal.cross(Vector::from(*tangent)).length() < 1e-3 {
+            return Ok(());
+        }
+        let towards = |incoming| {
+            AnisotropicGgxLobe::new(ggx, schlick, lit.normal, tangent, incoming).unwrap()
+        };
+        let (lobe, back) = (towards(lit.incoming), towards(outgoing));
+        let mu = lit.surface.incident_cosine();
+        for (value, reverse, masking) in [
+            (lobe.value(*outgoing), back.value(*lit.incoming), Masking::HeightCorrelated),
+            (lobe.separable().value(*outgoing), back.separable().value(*lit.incoming),
+                Masking::Separable),
+        ] {
+            let fresnel = reference::Fresnel::Schlick(f0);
+            let brdf = Brdf::Anisotropic { roughness, tangent, fresnel, masking };
+            let exact = lit.surface.value(brdf, exact_outgoing);
+            prop_assert!(relative_error(value, exact) < 1e-3 || f64::from(value) == exact,
+                "{value} {exact}");
+            // f(ω_i, ω_o) = f(ω_o, ω_i)
+            prop_assert!(relative_error(reverse, exact * mu / mu_o.max(1e-4)) < 2e-3
+                || (value == 0.0 && reverse == 0.0), "{reverse} {exact}");
+        }
+    }
+
+    #[test]
+    fn grain_of_equal_roughness_reflects_as_none(
+        roughness in generators::up_to_one(0.01),
+        lit in generators::lit(),
+        tangent in generators::unit_vector(),
+        outgoing in generators::unit_vector(),
+    ) {
+        let tangent = Direction::new(tangent.to_f32()).unwrap();
+        let ggx = AnisotropicGgx::new(roughness, roughness).unwrap();
+        if let Ok(lobe) =
+            AnisotropicGgxLobe::new(ggx, NoFresnel, lit.normal, tangent, lit.incoming)
+        {
+            let plain = GgxLobe::new(
+                Ggx::new(roughness).unwrap(), NoFresnel, lit.normal, lit.incoming);
+            let outgoing = outgoing.to_f32();
+            let [value, same] = [lobe.value(outgoing), plain.value(outgoing)];
+            prop_assert!((value - same).abs() <= 1e-3 * same, "{value} {same}");
+            let [value, same] = [lobe.separable().value(outgoing), plain.separable().value(outgoing)];
+            prop_assert!((value - same).abs() <= 1e-3 * same, "{value} {same}");
+        }
+    }
+
+    #[test]
     fn lobe_is_finite_at_every_edge(
         roughness in prop_oneof![Just(Ggx::MIN_ROUGHNESS), generators::roughness()],
         incoming_height in generators::log_uniform(1e-45, 1.0),
@@ -200,7 +306,16 @@ proptest! {
         let outgoing = Vec3::new(sign, 0.0, outgoing_height as f32).normalize();
         let lobe = GgxLobe::new(
             Ggx::new(roughness).unwrap(), NoFresnel, stochastic_light_culling::Direction::Z, incoming);
-        for value in [lobe.value(outgoing), lobe.separable().value(outgoing)] {
+        let rougher = 1.0_f32.min(1e3 * roughness);
+        let grain = AnisotropicGgx::new(roughness, rougher).unwrap();
+        let grained = AnisotropicGgxLobe::new(
+            grain, NoFresnel, Direction::Z, Direction::Y, incoming).unwrap();
+        for value in [
+            lobe.value(outgoing),
+            lobe.separable().value(outgoing),
+            grained.value(outgoing),
+            grained.separable().value(outgoing),
+        ] {
             prop_assert!(value.is_finite() && value >= 0.0, "{value}");
         }
         prop_assert_eq!(lobe.value(Vec3::NAN), 0.0);

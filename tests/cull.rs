@@ -59,7 +59,7 @@ fn grid() -> impl Strategy<Value = Grid> {
         6 => (0.01..60.0_f32, 1.0..4.0_f32)
             .prop_map(|(near, ratio)| DepthInterval::new(near, near * ratio).ok()),
     ];
-    ([1..24_u32, 1..24_u32], 1..4_usize).prop_flat_map(move |(size, intervals)| {
+    ([1..60_u32, 1..30_u32], 1..4_usize).prop_flat_map(move |(size, intervals)| {
         let depths = prop::collection::vec(interval.clone(), intervals);
         let depths = prop::collection::vec(depths, (size[0] * size[1]) as usize);
         depths.prop_map(move |depths| Grid { size, depths })
@@ -91,6 +91,23 @@ fn sphere() -> impl Strategy<Value = CameraSphere> {
     })
 }
 
+/// The parallel lists are the serial ones, to the last number.
+#[cfg(feature = "rayon")]
+fn culled_in_parallel_as_serially<T: BatchShape + Send + Sync>(
+    batch: &LightBatch<T>,
+    tiles: &TileDepths,
+) -> Result<(), TestCaseError> {
+    let mut culler = Culler::new();
+    let [mut serial, mut parallel] = [LightLists::new(), LightLists::new()];
+    culler.cull(batch, tiles, &mut serial).unwrap();
+    culler
+        .cull_in_parallel(batch, tiles, &mut parallel)
+        .unwrap();
+    prop_assert_eq!(serial.ranges(), parallel.ranges());
+    prop_assert_eq!(serial.numbers(), parallel.numbers());
+    Ok(())
+}
+
 /// All cullers, each of which must find the same.
 fn cullers<T: BatchShape>() -> impl Iterator<Item = Culler<T>> {
     let flat_or_not = |lanes| {
@@ -102,10 +119,15 @@ fn cullers<T: BatchShape>() -> impl Iterator<Item = Culler<T>> {
     [16, 8, 4].into_iter().flat_map(flat_or_not)
 }
 
-fn culled_as_one_by_one<T: BatchShape>(grid: &Grid, shapes: &[T]) -> Result<(), TestCaseError> {
+fn culled_as_one_by_one<T: BatchShape + Send + Sync>(
+    grid: &Grid,
+    shapes: &[T],
+) -> Result<(), TestCaseError> {
     let tiles = grid.tile_depths();
     let mut batch = LightBatch::new();
     batch.extend((100..).zip(shapes.iter().copied()));
+    #[cfg(feature = "rayon")]
+    culled_in_parallel_as_serially(&batch, &tiles)?;
     for mut culler in cullers() {
         let mut lists = LightLists::new();
         let counters = culler.cull(&batch, &tiles, &mut lists).unwrap();
@@ -134,7 +156,7 @@ fn culled_as_one_by_one<T: BatchShape>(grid: &Grid, shapes: &[T]) -> Result<(), 
 }
 
 proptest! {
-    #![proptest_config(cases(256))]
+    #![proptest_config(cases(64))]
 
     #[test]
     fn lists_of_ellipsoids_are_those_of_the_scalar_test(
@@ -262,4 +284,24 @@ fn finds_the_known_lights_of_the_fixed_workloads() {
             );
         }
     }
+}
+
+#[test]
+fn later_frames_allocate_nothing() {
+    let frame = workload::frame();
+    let subregion = &frame[0];
+    let tiles = subregion.tile_depths(|tile| tile.scattered);
+    let camera = workload::camera();
+    let (mut batch, mut culler, mut lists) = (LightBatch::new(), Culler::new(), LightLists::new());
+    let mut draw_frame = || {
+        batch.clear();
+        for (number, light) in (0..).zip(&subregion.lights) {
+            batch.push(number, &light.stretch(&camera));
+        }
+        culler.cull(&batch, &tiles, &mut lists).unwrap();
+    };
+    let first = allocation_counter::measure(&mut draw_frame);
+    assert!(first.count_total > 0, "nothing is counted");
+    let second = allocation_counter::measure(&mut draw_frame);
+    assert_eq!(second.count_total, 0);
 }

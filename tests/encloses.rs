@@ -8,10 +8,11 @@ use std::f64::consts::TAU;
 
 use generators::Lit;
 use proptest::prelude::*;
-use reference::{Brdf, Fresnel, Masking, Shape, Vector, smith_g1};
+use reference::{Brdf, Fresnel, GivenFresnel, Masking, Shape, Vector, smith_g1};
 use stochastic_light_culling::{
-    Bound, Bounded, Conductor, ConstantLobe, Dielectric, Direction, Ellipsoid, Ggx, GgxLobe,
-    LambertLobe, MaskingShadowing, NoFresnel, Roulette, Schlick, Spheroid, Vpl, Xi, glam::Vec3,
+    AnisotropicGgx, AnisotropicGgxLobe, Bound, Bounded, Conductor, ConstantLobe, Dielectric,
+    Direction, Ellipsoid, Ggx, GgxLobe, LambertLobe, MaskingShadowing, NoFresnel, Roulette,
+    Schlick, Spheroid, Vpl, Xi, glam::Vec3,
 };
 
 /// What the crate says of a GGX light.
@@ -82,6 +83,24 @@ impl Case {
         }
     }
 
+    fn anisotropic_bound(
+        &self,
+        roughness: [f32; 2],
+        tangent: Direction,
+        fresnel: Fresnel,
+        masking: Masking,
+    ) -> Ellipsoid {
+        let [along, across] = roughness;
+        let ggx = AnisotropicGgx::new(along, across).unwrap();
+        let fresnel = GivenFresnel::try_from(fresnel).unwrap();
+        let (normal, incoming) = (self.lit.normal, self.lit.incoming);
+        let lobe = AnisotropicGgxLobe::new(ggx, fresnel, normal, tangent, incoming).unwrap();
+        match masking {
+            Masking::HeightCorrelated => self.bound(lobe),
+            Masking::Separable => self.bound(lobe.separable()),
+        }
+    }
+
     fn tight_bound<F, G>(&self, lobe: GgxLobe<F, G>) -> Ellipsoid
     where
         F: stochastic_light_culling::Fresnel,
@@ -117,6 +136,15 @@ impl Case {
                     ),
                 ]
             }
+            Brdf::Anisotropic {
+                roughness,
+                tangent,
+                fresnel,
+                masking,
+            } => {
+                let bound = self.anisotropic_bound(roughness, tangent, fresnel, masking);
+                vec![("ellipsoid of the anisotropic lobe", bound.into())]
+            }
             Brdf::Lambert { albedo } => {
                 let lobe = LambertLobe::new(albedo, self.lit.normal).unwrap();
                 vec![("sphere of Lambert's lobe", self.bound(lobe).into())]
@@ -136,9 +164,16 @@ impl Case {
         let in_plane = across.cross(mirror);
         let width = match self.brdf {
             Brdf::Ggx { roughness, .. } => f64::from(roughness),
+            Brdf::Anisotropic { roughness, .. } => f64::from(roughness[0].min(roughness[1])),
             _ => 1.0,
         };
         let mut directions = vec![mirror, surface.normal, surface.incoming, -surface.incoming];
+        if let Brdf::Anisotropic {
+            roughness, tangent, ..
+        } = self.brdf
+        {
+            directions.extend(surface.mirrored_by_facets(roughness, tangent));
+        }
         for step in 0..48 {
             // Even in the half angle's tangent over α, so that narrow lobes are covered too.
             let t = std::f64::consts::PI * (f64::from(step) + 0.5) / 48.0;
@@ -167,7 +202,7 @@ fn case() -> impl Strategy<Value = Case> {
         generators::roulette(),
     )
         .prop_map(|(brdf, lit, position, roulette)| Case {
-            brdf,
+            brdf: generators::laid_on(&lit, brdf),
             lit,
             position,
             roulette,

@@ -256,7 +256,10 @@ fn measures_every_bound() {
     let (json, pictures) = small_run("small", &["--alpha", "0.1", "--seed", "3"]);
     let [indirect, lights, reference] = ["indirect", "lights", "reference"];
     let bounds = ["sphere", "enclosing", "spheroid", "tight"];
-    let mut expected = bounds.map(|bound| format!("{lights}-{bound}.png")).to_vec();
+    let mut expected: Vec<String> = bounds
+        .into_iter()
+        .flat_map(|bound| ["", "-refined"].map(|kind| format!("{lights}-{bound}{kind}.png")))
+        .collect();
     expected.extend([indirect, reference].map(|name| format!("{name}.png")));
     expected.sort_unstable();
     assert_eq!(pictures, expected);
@@ -270,10 +273,16 @@ fn measures_every_bound() {
     assert_eq!(json["seed"], 3);
 
     let methods = json["methods"].as_array().expect("a list of methods");
-    let names: Vec<&Value> = methods.iter().map(|row| &row["bound"]).collect();
-    assert_eq!(names, bounds);
+    let by_kind = |refined: bool| {
+        let rows = methods.iter().filter(move |row| row["refined"] == refined);
+        let rows: Vec<&Value> = rows.collect();
+        let names: Vec<&Value> = rows.iter().map(|row| &row["bound"]).collect();
+        assert_eq!(names, bounds);
+        rows
+    };
+    let kinds = [by_kind(false), by_kind(true)];
+    assert_eq!(json["diffuse"]["refined"], false);
     for row in methods.iter().chain([&json["diffuse"]]) {
-        assert_eq!(row["refined"], false);
         for name in ["cull_ms", "shade_ms", "rmse"] {
             assert!(number(row, name) >= 0.0);
         }
@@ -286,8 +295,11 @@ fn measures_every_bound() {
         assert!(contributing > 0.0);
         assert!((all - contributing - false_positives).abs() < 1e-9);
     }
-    for pair in methods.windows(2) {
-        let [looser, tighter] = [&pair[0], &pair[1]];
+    let [tiles, pixels] = &kinds;
+    let refinements = tiles.iter().zip(pixels).map(|(a, b)| [a, b]);
+    let bounds = kinds.iter().flat_map(|rows| rows.windows(2));
+    let bounds = bounds.map(|pair| [&pair[0], &pair[1]]);
+    for [looser, tighter] in refinements.chain(bounds) {
         assert!(number(tighter, "lights_per_pixel") <= number(looser, "lights_per_pixel"));
         assert_eq!(
             tighter["contributing_per_pixel"],
@@ -301,11 +313,17 @@ fn measures_every_bound() {
 fn measures_what_is_asked_for() {
     let asked = ["--bound", "spheroid", "--reference", "off", "--no-denoise"];
     let (json, pictures) = small_run("asked", &asked);
-    assert_eq!(pictures, ["indirect.png", "lights-spheroid.png"]);
+    let lights = ["lights-spheroid-refined.png", "lights-spheroid.png"];
+    assert_eq!(pictures, [&["indirect.png"], &lights[..]].concat());
     let methods = json["methods"].as_array().expect("a list of methods");
-    assert_eq!(methods.len(), 1);
-    assert_eq!(methods[0]["bound"], "spheroid");
-    assert!(methods[0]["rmse"].is_null());
+    assert_eq!(methods.len(), 2);
+    for (row, refined) in methods.iter().zip([false, true]) {
+        assert_eq!(
+            (&row["bound"], &row["refined"]),
+            (&"spheroid".into(), &refined.into())
+        );
+        assert!(row["rmse"].is_null());
+    }
 }
 
 #[test]

@@ -275,3 +275,27 @@ fn lights_around_and_behind_the_camera() {
         );
     }
 }
+
+proptest! {
+    #[test]
+    fn exponential_slices_fill_the_interval(
+        near in prop_oneof![Just(0.0_f32), any::<f32>().prop_map(f32::abs)],
+        ratio in prop_oneof![Just(1.0_f32), 1.0..1.000_01_f32, 1.0..1e4_f32, Just(f32::MAX)],
+        count in 0..70_u32,
+    ) {
+        prop_assume!(near.is_finite());
+        let far = if near == 0.0 { ratio - 1.0 } else { (near * ratio).min(f32::MAX) };
+        let interval = DepthInterval::new(near, far).unwrap();
+        let slices: Vec<_> = interval.exponential_slices(count).collect();
+        prop_assert_eq!(slices.len(), count as usize);
+        if let (Some(first), Some(last)) = (slices.first(), slices.last()) {
+            prop_assert_eq!((first.near(), last.far()), (near, far));
+        }
+        for slice in &slices {
+            prop_assert!(near <= slice.near() && slice.near() <= slice.far() && slice.far() <= far);
+        }
+        for pair in slices.windows(2) {
+            prop_assert!(pair[1].near() <= pair[0].far(), "{:?} leave a gap", pair);
+        }
+    }
+}

@@ -3,7 +3,8 @@
 use clap::ValueEnum;
 use rayon::prelude::*;
 use stochastic_light_culling::{
-    Camera, CameraSphere, GgxLobe, Interleave, LambertLobe, Roulette, Schlick, Spheroid, Stretch,
+    BatchShape, Camera, CameraSphere, GgxLobe, Interleave, LambertLobe, LightBatch, Roulette,
+    Schlick, Spheroid, Stretch,
 };
 
 use super::Light;
@@ -35,10 +36,6 @@ impl BoundKind {
         }
     }
 }
-
-/// The numbers of a subregion's lights, in rising order, with what they are tested by; those that
-/// reach nowhere are left out.
-pub type Candidates<T> = Vec<(u32, T)>;
 
 pub fn spheroid(light: &GlossyLight, roulette: &Roulette, camera: &Camera) -> Option<Stretch> {
     Stretch::new(&range(light, roulette).into(), camera)
@@ -76,20 +73,23 @@ fn range(light: &GlossyLight, roulette: &Roulette) -> Spheroid {
     light.vpl.bound(roulette, light.xi)
 }
 
-/// The candidates of each subregion.
-pub fn candidates<L: Sync, T: Send>(
+/// The lights of each subregion, in the order of their numbers; those that reach nowhere are left out.
+pub fn batches<L: Sync, T: BatchShape + Send>(
     lights: &[Light<L>],
     interleave: &Interleave,
-    test: impl Fn(&Light<L>) -> Option<T> + Sync,
-) -> Vec<Candidates<T>> {
+    shape: impl Fn(&Light<L>) -> Option<T> + Sync,
+) -> Vec<LightBatch<T>> {
     let count = lights.len() as u32;
     (0..interleave.subregions())
         .into_par_iter()
         .map(|subregion| {
-            (0..interleave.lights_in(subregion, count))
-                .map(|local| interleave.join_light(subregion, local))
-                .filter_map(|number| Some((number, test(&lights[number as usize])?)))
-                .collect()
+            let mut batch = LightBatch::new();
+            let numbers = (0..interleave.lights_in(subregion, count))
+                .map(|local| interleave.join_light(subregion, local));
+            batch.extend(
+                numbers.filter_map(|number| Some((number, shape(&lights[number as usize])?))),
+            );
+            batch
         })
         .collect()
 }

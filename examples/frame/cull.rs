@@ -1,27 +1,33 @@
 //! Which lights may touch which tile.
 
 use rayon::prelude::*;
-use stochastic_light_culling::{DepthInterval, TileTest};
+use stochastic_light_culling::{BatchShape, Culler, Error, LightBatch, LightLists};
 
-use super::Tile;
-use super::bounds::Candidates;
+use super::Tiles;
 
-/// The numbers of the lights, in rising order, that may touch a tile's two depth intervals.
-pub type TileLights = [Vec<u32>; 2];
+/// A culler for each subregion, with the lists that it fills: memory that is used frame after frame.
+pub struct Cullers<T: BatchShape> {
+    cullers: Vec<Culler<T>>,
+    pub lists: Vec<LightLists>,
+}
 
-/// The lists of all `tiles`, from the candidates of each subregion.
-pub fn cull<T: TileTest + Sync>(tiles: &[Tile], candidates: &[Candidates<T>]) -> Vec<TileLights> {
-    let lists = |tile: &Tile| {
-        let candidates = &candidates[tile.subregion as usize];
-        let touching = |depths: DepthInterval| {
-            candidates
-                .iter()
-                .filter(|(_, test)| test.touches(&tile.rectangle, &depths))
-                .map(|(number, _)| *number)
-                .collect()
-        };
-        tile.depths
-            .map(|depths| depths.map_or_else(Vec::new, touching))
-    };
-    tiles.par_iter().map(lists).collect()
+impl<T: BatchShape + Send + Sync> Cullers<T> {
+    pub fn new(tiles: &Tiles) -> Self {
+        let count = tiles.subregions().len();
+        Self {
+            cullers: vec![Culler::new(); count],
+            lists: vec![LightLists::new(); count],
+        }
+    }
+
+    /// The lists of each subregion's tiles, from the lights of each subregion.
+    pub fn cull(&mut self, tiles: &Tiles, batches: &[LightBatch<T>]) -> Result<(), Error> {
+        let results = self.cullers.par_iter_mut().zip(&mut self.lists);
+        let frame = tiles.subregions().par_iter().zip(batches);
+        results
+            .zip(frame)
+            .try_for_each(|((culler, lists), (subregion, batch))| {
+                culler.cull(batch, &subregion.depths, lists).map(drop)
+            })
+    }
 }

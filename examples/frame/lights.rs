@@ -1,7 +1,7 @@
 //! The lights of a frame: lit points with their share of the flux and their ξ.
 
 use stochastic_light_culling::{
-    Error, GgxLobe, Interleave, LambertLobe, Lobe, Schlick, Vpl, Xi, glam::Vec3,
+    Direction, Error, GgxLobe, Interleave, LambertLobe, Lobe, Schlick, Vpl, Xi, glam::Vec3,
 };
 
 use crate::scene::{LitPoint, LitPoints};
@@ -11,6 +11,8 @@ use crate::scene::{LitPoint, LitPoints};
 pub struct Light<L> {
     /// Its flux is that of the brightest channel, times the weight of its subregion.
     pub vpl: Vpl<L>,
+    /// Of the surface that it lies on; it lights nothing below.
+    pub normal: Direction,
     /// Each channel's flux over that of the brightest.
     pub tint: Vec3,
     pub xi: Xi,
@@ -44,6 +46,7 @@ fn lights<L: Lobe + Copy>(
         let brightest = point.flux.max_element();
         Ok(Light {
             vpl: Vpl::new(point.position, weight * brightest, point.lobe)?,
+            normal: point.normal,
             tint: if brightest > 0.0 {
                 point.flux / brightest
             } else {

@@ -2,79 +2,99 @@
 
 use std::time::Instant;
 
-use stochastic_light_culling::{Camera, LambertLobe, Lobe, TileTest};
+use stochastic_light_culling::{BatchShape, Camera, Error, LambertLobe, Lobe};
 
 use super::bounds::{self, BoundKind, GlossyLight};
-use super::cull::cull;
+use super::cull::Cullers;
 use super::shade::shade;
-use super::{Frame, Light, Shaded};
+use super::{Frame, Light, Shaded, Tiles};
 
 /// What one bound costs and what comes of it.
 pub struct Measured {
     pub bound: BoundKind,
+    pub refined: bool,
     pub bound_ms: f64,
     pub cull_ms: f64,
     pub shade_ms: f64,
     pub shaded: Shaded,
 }
 
-/// The frame by its glossy lights, bounded by `bound`.
+/// What to cull by.
+#[derive(Clone, Copy)]
+pub struct Tiling<'a> {
+    pub tiles: &'a Tiles,
+    /// Whether tiles are single pixels: a light that touches one is inside the bound there, or nearly.
+    pub refined: bool,
+}
+
+/// The frame by its glossy lights, bounded by `bound`, with each of `tilings`.
 pub fn measure_glossy(
     frame: &Frame,
+    tilings: &[Tiling],
     camera: &Camera,
     lights: &[GlossyLight],
     bound: BoundKind,
     done: impl Fn() + Sync,
-) -> Measured {
+) -> Result<Vec<Measured>, Error> {
     let roulette = &frame.roulette;
     match bound {
         BoundKind::Sphere => {
-            let test = |light: &_| bounds::sphere_at_light(light, roulette, camera);
-            measure(frame, lights, bound, test, done)
+            let shape = |light: &_| bounds::sphere_at_light(light, roulette, camera);
+            measure(frame, tilings, lights, bound, shape, done)
         }
         BoundKind::Enclosing => {
-            let test = |light: &_| bounds::enclosing_sphere(light, roulette, camera);
-            measure(frame, lights, bound, test, done)
+            let shape = |light: &_| bounds::enclosing_sphere(light, roulette, camera);
+            measure(frame, tilings, lights, bound, shape, done)
         }
         BoundKind::Spheroid => {
-            let test = |light: &_| bounds::spheroid(light, roulette, camera);
-            measure(frame, lights, bound, test, done)
+            let shape = |light: &_| bounds::spheroid(light, roulette, camera);
+            measure(frame, tilings, lights, bound, shape, done)
         }
         BoundKind::Tight => {
-            let test = |light: &_| bounds::tight(light, roulette, camera);
-            measure(frame, lights, bound, test, done)
+            let shape = |light: &_| bounds::tight(light, roulette, camera);
+            measure(frame, tilings, lights, bound, shape, done)
         }
     }
 }
 
-/// The frame by its diffuse lights.
+/// The frame by its diffuse lights, with each of `tilings`.
 pub fn measure_diffuse(
     frame: &Frame,
+    tilings: &[Tiling],
     camera: &Camera,
     lights: &[Light<LambertLobe>],
     done: impl Fn() + Sync,
-) -> Measured {
-    let test = |light: &_| bounds::diffuse_sphere(light, &frame.roulette, camera);
-    measure(frame, lights, BoundKind::Sphere, test, done)
+) -> Result<Vec<Measured>, Error> {
+    let shape = |light: &_| bounds::diffuse_sphere(light, &frame.roulette, camera);
+    measure(frame, tilings, lights, BoundKind::Sphere, shape, done)
 }
 
-fn measure<L: Lobe + Sync, T: TileTest + Send + Sync>(
+fn measure<L: Lobe + Sync, T: BatchShape + Send + Sync>(
     frame: &Frame,
+    tilings: &[Tiling],
     lights: &[Light<L>],
     bound: BoundKind,
-    test: impl Fn(&Light<L>) -> Option<T> + Sync,
+    shape: impl Fn(&Light<L>) -> Option<T> + Sync,
     done: impl Fn() + Sync,
-) -> Measured {
-    let (candidates, bound_ms) = timed(|| bounds::candidates(lights, &frame.interleave, test));
-    let (lists, cull_ms) = timed(|| cull(frame.tiles, &candidates));
-    let (shaded, shade_ms) = timed(|| shade(frame, lights, &lists, done));
-    Measured {
-        bound,
-        bound_ms,
-        cull_ms,
-        shade_ms,
-        shaded,
-    }
+) -> Result<Vec<Measured>, Error> {
+    let (batches, bound_ms) = timed(|| bounds::batches(lights, &frame.interleave, shape));
+    let measured = |tiling: &Tiling| {
+        let mut cullers = Cullers::new(tiling.tiles);
+        // The first frame makes room for the lists. Like any later one, the second does not.
+        cullers.cull(tiling.tiles, &batches)?;
+        let (culled, cull_ms) = timed(|| cullers.cull(tiling.tiles, &batches));
+        culled?;
+        let (shaded, shade_ms) = timed(|| shade(frame, tiling, lights, &cullers.lists, &done));
+        Ok(Measured {
+            bound,
+            refined: tiling.refined,
+            bound_ms,
+            cull_ms,
+            shade_ms,
+            shaded,
+        })
+    };
+    tilings.iter().map(measured).collect()
 }
 
 /// What `step` gives, and the milliseconds it takes.

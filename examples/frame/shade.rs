@@ -1,10 +1,9 @@
 //! Irradiance of each pixel from the lights in its tile's list.
 
 use rayon::prelude::*;
-use stochastic_light_culling::{Lobe, glam::Vec3};
+use stochastic_light_culling::{LightLists, Lobe, glam::Vec3};
 
-use super::cull::TileLights;
-use super::{Frame, Light, Tile};
+use super::{Frame, Light, Tiling};
 use crate::scene::Surface;
 
 /// For each pixel of an image, row by row: irradiance, the lights whose lobe was evaluated, and those
@@ -37,69 +36,73 @@ struct Sums {
     contributing: u32,
 }
 
-/// Shades all pixels of the frame's tiles by `lists`; calls `done` after each tile.
+/// Shades all pixels by the lists of their tiles; calls `done` after each row of a subregion.
 pub fn shade<L: Lobe + Sync>(
     frame: &Frame,
+    tiling: &Tiling,
     lights: &[Light<L>],
-    lists: &[TileLights],
+    lists: &[LightLists],
     done: impl Fn() + Sync,
 ) -> Shaded {
-    let shade_tile = |(tile, lists): (&Tile, &TileLights)| {
-        let sums = |pixel: &[u32; 2]| {
-            let surface = frame.surfaces.at(*pixel);
-            if surface.is_sky() {
-                return Sums::default();
-            }
-            shade_pixel(
-                frame,
-                lights,
-                &lists[tile.interval_of(surface.depth)],
-                surface,
-            )
-        };
-        let sums: Vec<Sums> = tile.pixels.iter().map(sums).collect();
-        done();
-        sums
+    let shade_pixel = |pixel: &[u32; 2]| {
+        let surface = frame.surfaces.at(*pixel);
+        let place = tiling.tiles.place_of(*pixel, surface.depth)?;
+        let list = lists[place.subregion].of(place.tile, place.interval);
+        Some(sums(frame, lights, list, surface, tiling.refined))
     };
-    let by_tile: Vec<Vec<Sums>> = frame.tiles.par_iter().zip(lists).map(shade_tile).collect();
+    // Neighbours in a subregion share most of their lights; those in the image, none.
+    let rows = frame.interleaved_rows();
+    let shaded: Vec<Vec<Option<Sums>>> = rows
+        .par_iter()
+        .map(|row| {
+            let sums = row.iter().map(shade_pixel).collect();
+            done();
+            sums
+        })
+        .collect();
 
     let count = frame.surfaces.surfaces.len();
-    let mut shaded = Shaded {
+    let mut image = Shaded {
         irradiance: vec![Vec3::ZERO; count],
         evaluated: vec![0; count],
         contributing: vec![0; count],
     };
-    for (tile, sums) in frame.tiles.iter().zip(by_tile) {
-        for (pixel, sums) in tile.pixels.iter().zip(sums) {
+    for (pixel, sums) in rows.iter().flatten().zip(shaded.iter().flatten()) {
+        if let Some(sums) = sums {
             let index = frame.surfaces.index(*pixel);
-            shaded.irradiance[index] = sums.irradiance;
-            shaded.evaluated[index] = sums.evaluated;
-            shaded.contributing[index] = sums.contributing;
+            image.irradiance[index] = sums.irradiance;
+            image.evaluated[index] = sums.evaluated;
+            image.contributing[index] = sums.contributing;
         }
     }
-    shaded
+    image
 }
 
+/// If `refined`, lights that lie with their backs to the surface are passed over before their lobe is
+/// evaluated, in which they are zero.
+///
 /// In the order of the list, which is the same for every bound: the sums are then the same too.
-fn shade_pixel<L: Lobe>(
+fn sums<L: Lobe>(
     frame: &Frame,
     lights: &[Light<L>],
     list: &[u32],
     surface: &Surface,
+    refined: bool,
 ) -> Sums {
-    let mut sums = Sums {
-        evaluated: list.len() as u32,
-        ..Sums::default()
-    };
+    let mut sums = Sums::default();
     for number in list {
         let light = &lights[*number as usize];
-        let path = Path::new(light, surface, frame.least_distance_squared);
-        let (roulette, xi) = (&frame.roulette, light.xi);
-        if roulette.accepts(path.intensity, path.distance_squared, xi) {
-            let weight = roulette.weight(path.intensity, path.distance_squared, xi);
-            sums.contributing += 1;
-            sums.irradiance += weight * path.irradiance() * light.tint;
+        let to_surface = surface.position - light.vpl.position();
+        if refined && light.normal.dot(to_surface) <= 0.0 {
+            continue;
         }
+        sums.evaluated += 1;
+        let path = Path::new(light, surface, frame.least_distance_squared);
+        let (intensity, distance_squared) = (path.intensity, path.distance_squared);
+        let radiance = (frame.roulette).estimate(intensity, distance_squared, light.xi);
+        // Zero where the light is not accepted.
+        sums.contributing += u32::from(radiance > 0.0);
+        sums.irradiance += radiance * path.cosine * light.tint;
     }
     sums
 }
@@ -118,7 +121,7 @@ impl Path {
         let to_surface = surface.position - light.vpl.position();
         let true_distance_squared = to_surface.length_squared();
         // Of no length where the two coincide: no direction, hence no light.
-        let direction = to_surface / true_distance_squared.sqrt().max(f32::MIN_POSITIVE);
+        let direction = to_surface * true_distance_squared.sqrt().max(f32::MIN_POSITIVE).recip();
         Self {
             intensity: light.vpl.radiant_intensity(direction),
             distance_squared: true_distance_squared.max(least_distance_squared),

@@ -24,7 +24,7 @@ pub fn json(request: &Request, results: &Results) -> String {
 fn row(row: &Row) -> Value {
     json!({
         "bound": row.bound,
-        "refined": false,
+        "refined": row.refined,
         "lights_per_pixel": row.lights_per_pixel,
         "contributing_per_pixel": row.contributing_per_pixel,
         "false_positives_per_pixel": row.false_positives_per_pixel(),

@@ -15,6 +15,8 @@ pub use table::table;
 /// What one bound came to.
 pub struct Row {
     pub bound: &'static str,
+    /// Whether lights were culled by pixels, not by tiles.
+    pub refined: bool,
     pub lights_per_pixel: f64,
     pub contributing_per_pixel: f64,
     pub cull_ms: f64,

@@ -12,7 +12,7 @@ pub fn table(request: &Request, results: &Results) -> String {
         ),
         String::new(),
         format!(
-            "{:18} {:>12} {:>12} {:>15} {:>10} {:>9} {:>9}",
+            "{:27} {:>12} {:>12} {:>15} {:>10} {:>9} {:>9}",
             "", "lights/pixel", "contributing", "false positives", "RMSE", "cull ms", "shade ms"
         ),
     ];
@@ -30,9 +30,10 @@ fn line(kind: &str, row: &Row) -> String {
     let rmse = row
         .rmse
         .map_or_else(|| "–".into(), |rmse| format!("{rmse:.5}"));
+    let refined = if row.refined { ", refined" } else { "" };
     format!(
-        "{:18} {:>12.1} {:>12.1} {:>15.1} {rmse:>10} {:>9.1} {:>9.1}",
-        format!("{kind}, {}", row.bound),
+        "{:27} {:>12.1} {:>12.1} {:>15.1} {rmse:>10} {:>9.1} {:>9.1}",
+        format!("{kind}, {}{refined}", row.bound),
         row.lights_per_pixel,
         row.contributing_per_pixel,
         row.false_positives_per_pixel(),

@@ -1,7 +1,7 @@
 //! From photons to the points that light others.
 
 use stochastic_light_culling::{
-    Error, Ggx, GgxLobe, LambertLobe, Schlick,
+    Direction, Error, Ggx, GgxLobe, LambertLobe, Schlick,
     glam::{FloatExt, Vec3},
 };
 
@@ -12,6 +12,7 @@ use super::photon::Photon;
 #[derive(Clone, Copy, Debug)]
 pub struct LitPoint<L> {
     pub position: Vec3,
+    pub normal: Direction,
     /// In W, for red, green and blue; the lobe is the same for the three.
     pub flux: Vec3,
     pub lobe: L,
@@ -44,6 +45,7 @@ impl LitPoints {
             if material.glossy {
                 points.glossy.push(LitPoint {
                     position: photon.position,
+                    normal: photon.normal,
                     flux: photon.flux * material.tint,
                     lobe: GgxLobe::new(ggx, fresnel, photon.normal, photon.incoming),
                 });
@@ -52,6 +54,7 @@ impl LitPoints {
             if albedo > 0.0 {
                 points.diffuse.push(LitPoint {
                     position: photon.position,
+                    normal: photon.normal,
                     flux: photon.flux * (material.albedo / albedo),
                     lobe: LambertLobe::new(albedo, photon.normal)?,
                 });

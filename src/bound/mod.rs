@@ -4,10 +4,12 @@
 //! bounded once for unit scale and at the origin ([`Bounded`]), and each frame's ξ scales the bound
 //! and puts it in place ([`Bound`]). Each step rounds outward.
 
+mod anisotropic;
 mod constant;
 mod ellipsoid;
 mod ggx;
 mod lambert;
+mod principal_axes;
 mod sphere;
 mod spheroid;
 mod support;

@@ -10,9 +10,8 @@
 //! That is the largest root of a cubic which is convex beyond it. Newton's method from above stays
 //! above, so where it ends is an upper bound.
 
+use crate::wide::{Vector, cross, dot, unit};
 use crate::{Direction, Fresnel, GgxLobe, MaskingShadowing, math};
-
-type Vector = [f64; 3];
 
 impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
     /// An upper bound of d·x over the isosurface for Φ/(δξ) = 1 and a light at the origin, where d is
@@ -47,24 +46,6 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
         let over_alpha = math::sqrt(radius_squared) / alpha;
         math::round_up(over_alpha * math::round_up(eigenvalue as f32, 1), 16)
     }
-}
-
-fn unit(direction: Direction) -> Vector {
-    let v = direction.as_f64();
-    let length = math::length(v);
-    v.map(|x| x / length)
-}
-
-fn dot(a: Vector, b: Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: Vector, b: Vector) -> Vector {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 /// The characteristic polynomial λ³ − trace λ² + minors λ − determinant of Q.

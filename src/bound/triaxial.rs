@@ -66,23 +66,30 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
         let alpha = self.ggx().roughness();
         let radius_squared =
             self.max_reflected() * self.masking_over_four_cosines() * core::f32::consts::FRAC_1_PI;
-        let radius = math::sqrt(radius_squared);
-        let shape = Triaxial::new(alpha, self.incident_cosine(), self.incident_sine());
-
-        let rotation = self.rotation();
-        let distance = radius * ((1.0 - alpha) * (1.0 + alpha) / (2.0 * alpha));
-        let long = radius * ((1.0 + alpha * alpha) / (2.0 * alpha));
-        let semi_axes = Vec3::new(
-            long * shape.in_plane,
-            radius * shape.in_plane,
-            radius * shape.across,
-        );
-        // The rounding of the axes to f32 tilts them by √3·1.5u at most.
-        let shortest = semi_axes.y.min(semi_axes.z);
-        let tilt = 4.0 * math::UNIT_ROUNDOFF * (semi_axes.x / shortest);
-        let semi_axes = semi_axes * math::round_up(1.0 + tilt, 64);
-        Ellipsoid::from_parts(Vec3::ZERO, rotation.x_axis * distance, rotation, semi_axes)
+        ellipsoid_around(self, alpha, math::sqrt(radius_squared))
     }
+}
+
+/// The ellipsoid around the surface of r = `radius` and α = `alpha`, for the directions of `lobe`.
+pub(super) fn ellipsoid_around<F: Fresnel, G>(
+    lobe: &GgxLobe<F, G>,
+    alpha: f32,
+    radius: f32,
+) -> Ellipsoid {
+    let shape = Triaxial::new(alpha, lobe.incident_cosine(), lobe.incident_sine());
+    let rotation = lobe.rotation();
+    let distance = radius * ((1.0 - alpha) * (1.0 + alpha) / (2.0 * alpha));
+    let long = radius * ((1.0 + alpha * alpha) / (2.0 * alpha));
+    let semi_axes = Vec3::new(
+        long * shape.in_plane,
+        radius * shape.in_plane,
+        radius * shape.across,
+    );
+    // The rounding of the axes to f32 tilts them by √3·1.5u at most.
+    let shortest = semi_axes.y.min(semi_axes.z);
+    let tilt = 4.0 * math::UNIT_ROUNDOFF * (semi_axes.x / shortest);
+    let semi_axes = semi_axes * math::round_up(1.0 + tilt, 64);
+    Ellipsoid::from_parts(Vec3::ZERO, rotation.x_axis * distance, rotation, semi_axes)
 }
 
 impl<F: Fresnel, G: MaskingShadowing> Vpl<GgxLobe<F, G>> {

@@ -33,6 +33,12 @@ impl Ggx {
         .map(|roughness| Self { roughness })
     }
 
+    /// The microsurface of a roughness that is known to be in range.
+    pub(super) fn of_valid(roughness: f32) -> Self {
+        debug_assert!((Self::MIN_ROUGHNESS..=1.0).contains(&roughness));
+        Self { roughness }
+    }
+
     /// α.
     pub fn roughness(self) -> f32 {
         self.roughness

@@ -126,6 +126,14 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         self.fresnel.maximum(smallest_cosine)
     }
 
+    /// The lobe with `root` in the place of √(kμ² + α²) for ω_i, and none other.
+    pub(super) fn with_incident_root(self, root: f32) -> Self {
+        Self {
+            incident_root: root,
+            ..self
+        }
+    }
+
     /// √(1 − μ²) ≥ 0.
     pub(crate) fn incident_sine(&self) -> f32 {
         math::length(math::cross(*self.normal, *self.incoming)) as f32
@@ -213,9 +221,15 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
     }
 }
 
-impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
+impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
+    /// The lobe's value with another NDF, of the half vector, and another root, of μ_o.
     #[inline]
-    fn value(&self, outgoing: Vec3) -> f32 {
+    pub(super) fn value_with(
+        &self,
+        outgoing: Vec3,
+        ndf: impl FnOnce(Vec3) -> f32,
+        masking_root: impl FnOnce(f32) -> f32,
+    ) -> f32 {
         let outgoing_cosine = self.normal.dot(outgoing);
         if !(outgoing_cosine > 0.0 && self.incident_cosine > 0.0) {
             return 0.0;
@@ -224,12 +238,23 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
         // ω_i·ω_h is half the length of ω_i + ω_o.
         let half_angle_cosine = (0.5 * math::sqrt(half_vector.length_squared())).min(1.0);
         self.fresnel.reflectance(half_angle_cosine)
-            * self.ggx.ndf_at(half_vector, *self.normal)
+            * ndf(half_vector)
             * G::over_four_incident_cosines(
                 self.incident_cosine,
                 self.incident_root,
                 outgoing_cosine,
-                self.ggx.masking_root(outgoing_cosine),
+                masking_root(outgoing_cosine),
             )
+    }
+}
+
+impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
+    #[inline]
+    fn value(&self, outgoing: Vec3) -> f32 {
+        self.value_with(
+            outgoing,
+            |half_vector| self.ggx.ndf_at(half_vector, *self.normal),
+            |outgoing_cosine| self.ggx.masking_root(outgoing_cosine),
+        )
     }
 }

@@ -3,12 +3,12 @@ use super::Ggx;
 /// Smith's masking-shadowing function G2: the share of facets that are both lit and seen.
 ///
 /// A type parameter, so that the form an engine shades with is the form its lights are culled by.
-/// Every form is at most G1(μ_i) and grows with μ_o, which the bounds rely on.
+/// Every form is at most G1(μ_i), grows with μ_o and falls with its root, which the bounds rely on.
 pub trait MaskingShadowing: Copy {
     /// G2(μ_i, μ_o)/(4μ_i): what a microfacet BRDF times μ_o has besides F and D.
     ///
     /// Finite for cosines in (0, 1], however close to grazing. The `root`s are √(kμ² + α²) of the
-    /// two cosines.
+    /// two cosines; of a direction (x, y, z) over a grain, √(α_x²x² + α_y²y² + z²).
     fn over_four_incident_cosines(
         incident_cosine: f32,
         incident_root: f32,

@@ -1,5 +1,7 @@
 //! What a surface reflects: microfacet terms, Fresnel factors, and the lobes made of them.
 
+mod anisotropic;
+mod anisotropic_lobe;
 mod conductor;
 mod constant;
 mod dielectric;
@@ -9,6 +11,8 @@ mod ggx_lobe;
 mod lambert;
 mod masking;
 
+pub use anisotropic::AnisotropicGgx;
+pub use anisotropic_lobe::AnisotropicGgxLobe;
 pub use conductor::Conductor;
 pub use constant::ConstantLobe;
 pub use dielectric::Dielectric;

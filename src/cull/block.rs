@@ -44,34 +44,43 @@ impl<T: BatchShape> Scratch<T> {
         self.counters = CullCounters::default();
     }
 
-    /// The lists of all tiles.
+    /// Puts the lists of the tiles of `area` into `lists`, which are those of this area alone.
     #[inline(always)]
     pub fn cull<S: Simd>(
         &mut self,
         simd: S,
         lights: &LightBatch<T>,
         tiles: &TileDepths,
+        area: Area,
         lists: &mut LightLists,
     ) {
         let mut walk = Walk {
             tiles,
             lists,
+            origin: area.min,
             rows: &mut self.rows,
             counters: &mut self.counters,
         };
-        walk.block(simd, lights, tiles.all(), &mut self.blocks[..self.levels]);
+        let blocks = &mut self.blocks[..self.levels];
+        if area.is_all_of(tiles) {
+            walk.block(simd, lights, area, blocks);
+        } else {
+            walk.part(simd, lights, area, blocks);
+        }
     }
 }
 
 struct Walk<'a, T: BatchShape> {
     tiles: &'a TileDepths,
     lists: &'a mut LightLists,
+    /// The tile whose lists come first.
+    origin: [usize; 2],
     rows: &'a mut Vec<Row<T>>,
     counters: &'a mut CullCounters,
 }
 
 impl<T: BatchShape> Walk<'_, T> {
-    /// The lists of the tiles of `area`, whose lights are among `lights`.
+    /// The lists of the tiles of `area`, which `lights` may all touch.
     fn block<S: Simd>(
         &mut self,
         simd: S,
@@ -79,27 +88,41 @@ impl<T: BatchShape> Walk<'_, T> {
         area: Area,
         blocks: &mut [LightBatch<T>],
     ) {
-        let Some((block, smaller)) = blocks.split_first_mut() else {
-            return simd.vectorize(
+        if blocks.is_empty() {
+            simd.vectorize(
                 #[inline(always)]
                 || self.tiles(simd, lights, area),
             );
-        };
-        for part in area.parts() {
-            let Some([across, down, depths]) = self.tiles.around(part) else {
-                self.counters.empty += 1;
-                continue;
-            };
-            simd.vectorize(
-                #[inline(always)]
-                || {
-                    let tile = TileLanes::new(simd, across, down, depths);
-                    self.counters.block_tests += filter(simd, lights, &tile, block);
-                },
-            );
-            if !block.is_empty() {
-                self.block(simd, block, part, smaller);
+        } else {
+            for part in area.parts() {
+                self.part(simd, lights, part, blocks);
             }
+        }
+    }
+
+    /// The lists of the tiles of `area`, whose lights are among `lights`.
+    fn part<S: Simd>(
+        &mut self,
+        simd: S,
+        lights: &LightBatch<T>,
+        area: Area,
+        blocks: &mut [LightBatch<T>],
+    ) {
+        let (Some([across, down, depths]), [block, smaller @ ..]) =
+            (self.tiles.around(area), blocks)
+        else {
+            self.counters.empty += 1;
+            return;
+        };
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let tile = TileLanes::new(simd, across, down, depths);
+                self.counters.block_tests += filter(simd, lights, &tile, block);
+            },
+        );
+        if !block.is_empty() {
+            self.block(simd, block, area, smaller);
         }
     }
 
@@ -123,7 +146,7 @@ impl<T: BatchShape> Walk<'_, T> {
             }
             for x in area.min[0]..area.max[0] {
                 let across = self.tiles.across(x);
-                let first = self.lists.slot([x, y]);
+                let first = self.lists.slot([x - self.origin[0], y - self.origin[1]]);
                 for (interval, depths) in self.tiles.depths(x, y).iter().enumerate() {
                     if *depths == NONE {
                         self.counters.empty += 1;

@@ -1,3 +1,6 @@
+#[cfg(feature = "rayon")]
+use alloc::vec::Vec;
+
 use fearless_simd::{Level, dispatch};
 
 use super::block::Scratch;
@@ -37,9 +40,11 @@ use crate::Error;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Culler<T: BatchShape> {
-    level: Level,
-    blocks: bool,
+    pub(super) level: Level,
+    pub(super) blocks: bool,
     scratch: Scratch<T>,
+    #[cfg(feature = "rayon")]
+    pub(super) workers: Vec<super::parallel::Worker<T>>,
 }
 
 /// What one cull did, and what it was spared.
@@ -74,6 +79,8 @@ impl<T: BatchShape> Culler<T> {
             level,
             blocks: true,
             scratch: Scratch::new(),
+            #[cfg(feature = "rayon")]
+            workers: Vec::new(),
         }
     }
 
@@ -98,24 +105,32 @@ impl<T: BatchShape> Culler<T> {
         tiles: &TileDepths,
         lists: &mut LightLists,
     ) -> Result<CullCounters, Error> {
-        lists.reset(tiles.all().size(), tiles.intervals() as usize);
-        let scratch = &mut self.scratch;
-        let levels = if self.blocks { tiles.all().levels() } else { 0 };
-        scratch.begin(levels);
-        dispatch!(self.level, simd => scratch.cull(simd, batch, tiles, lists));
-        if u32::try_from(lists.len()).is_err() {
-            lists.reset([0; 2], 0);
-            return Err(Error::Size {
-                quantity: "grid of tiles",
-                value: tiles.size(),
-                valid: "such that all lists together hold less than 2³² lights",
-            });
-        }
-        Ok(CullCounters {
-            pairs: lists.len() as u64,
-            ..scratch.counters
-        })
+        let (scratch, all) = (&mut self.scratch, tiles.all());
+        lists.reset(all.size(), tiles.intervals() as usize);
+        scratch.begin(if self.blocks { all.levels() } else { 0 });
+        dispatch!(self.level, simd => scratch.cull(simd, batch, tiles, all, lists));
+        counted(scratch.counters, tiles, lists)
     }
+}
+
+/// `counters` with the number of pairs, if the lists' ranges can tell it.
+pub(super) fn counted(
+    counters: CullCounters,
+    tiles: &TileDepths,
+    lists: &mut LightLists,
+) -> Result<CullCounters, Error> {
+    if u32::try_from(lists.len()).is_err() {
+        lists.reset([0; 2], 0);
+        return Err(Error::Size {
+            quantity: "grid of tiles",
+            value: tiles.size(),
+            valid: "such that all lists together hold less than 2³² lights",
+        });
+    }
+    Ok(CullCounters {
+        pairs: lists.len() as u64,
+        ..counters
+    })
 }
 
 /// Without `std` there is no asking the processor: what the target is compiled for.

@@ -51,8 +51,11 @@ impl DepthOrder {
     pub fn of(&mut self, positions: impl IntoIterator<Item = Vec3>, camera: &Camera) -> &[u32] {
         let forward = camera.rotation().row(2);
         let offset = camera.translation().z;
-        // What is not a number, since it is too far away, becomes zero as well.
-        let depth = |position: Vec3| (forward.dot(position) + offset).max(0.0);
+        let depth = |position: Vec3| {
+            let depth = forward.dot(position) + offset;
+            // Not so for what lies behind, for −0, and for what is too far away to be a number.
+            if depth > 0.0 { depth } else { 0.0 }
+        };
         self.depths.clear();
         self.depths.extend(positions.into_iter().map(depth));
         let count = u32::try_from(self.depths.len()).expect("less than 2³² positions");

@@ -72,6 +72,26 @@ impl LightLists {
         self.ranges.resize(columns * rows * intervals, [0; 2]);
     }
 
+    /// Appends the lists of `area` alone to these, which are of a grid.
+    #[cfg(feature = "rayon")]
+    pub(super) fn append(&mut self, area: super::tile_depths::Area, lists: &Self) {
+        let start = self.len;
+        self.room_for(lists.len)[..lists.len].copy_from_slice(lists.numbers());
+        self.take(lists.len);
+        for (y, row) in lists
+            .ranges
+            .chunks(lists.columns * lists.intervals)
+            .enumerate()
+        {
+            let first = self.slot([area.min[0], area.min[1] + y]);
+            for (range, moved) in row.iter().zip(&mut self.ranges[first..]) {
+                if range[0] < range[1] {
+                    *moved = range.map(|end| (start + end as usize) as u32);
+                }
+            }
+        }
+    }
+
     /// Where the ranges of a tile begin.
     pub(super) fn slot(&self, [x, y]: [usize; 2]) -> usize {
         (y * self.columns + x) * self.intervals
@@ -91,8 +111,10 @@ impl LightLists {
         self.len += count;
     }
 
-    /// Says that the list of `slot` begins at `start` and ends here.
+    /// Says that the list of `slot` begins at `start` and ends here. Empty lists are all at the beginning,
+    /// whether they were looked into or not.
     pub(super) fn end(&mut self, slot: usize, start: usize) {
-        self.ranges[slot] = [start as u32, self.len as u32];
+        let range = [start as u32, self.len as u32];
+        self.ranges[slot] = if start < self.len { range } else { [0; 2] };
     }
 }

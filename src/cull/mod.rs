@@ -30,6 +30,8 @@ mod depth_order;
 mod filter;
 mod lanes;
 mod lists;
+#[cfg(feature = "rayon")]
+mod parallel;
 mod shape;
 mod tile_depths;
 

@@ -16,19 +16,24 @@ pub trait BatchShape: TileTest + InLanes {}
 impl BatchShape for Stretch {}
 impl BatchShape for CameraSphere {}
 
+/// A number, many of them, or a vector.
+pub trait Lane: Copy + Debug + Send + Sync {}
+
+impl<T: Copy + Debug + Send + Sync> Lane for T {}
+
 /// The tile test over lanes, in the same operations as [`TileTest`].
 pub trait InLanes: Copy {
     /// The numbers of a light, each of type `T`.
-    type Fields<T: Copy + Debug>: Copy + Debug + AsRef<[T]> + AsMut<[T]>;
+    type Fields<T: Lane>: Lane + AsRef<[T]> + AsMut<[T]>;
     /// What the lights have in common with all tiles of a row: a part of the test's box.
-    type Row<T: Copy + Debug>: Copy + Debug + AsRef<[T]> + AsMut<[T]>;
+    type Row<T: Lane>: Lane + AsRef<[T]> + AsMut<[T]>;
 
     /// Lights that touch nothing.
     const NOWHERE: Self::Fields<Lanes>;
     const NO_ROW: Self::Row<Lanes>;
 
-    fn fields_of<T: Copy + Debug>(value: T) -> Self::Fields<T>;
-    fn row_of<T: Copy + Debug>(value: T) -> Self::Row<T>;
+    fn fields_of<T: Lane>(value: T) -> Self::Fields<T>;
+    fn row_of<T: Lane>(value: T) -> Self::Row<T>;
     fn fields(&self) -> Self::Fields<f32>;
     fn from_fields(fields: Self::Fields<f32>) -> Self;
 
@@ -73,9 +78,9 @@ impl<S: Simd> TileLanes<S> {
 
 impl InLanes for Stretch {
     /// M₁₁, M₁₂, M₁₃, M₂₁, M₂₂, M₂₃, m, and Mc′.
-    type Fields<T: Copy + Debug> = [T; 10];
+    type Fields<T: Lane> = [T; 10];
     /// M₁₂y + M₁₃ and M₂₂y + M₂₃, from the least to the greatest.
-    type Row<T: Copy + Debug> = [T; 4];
+    type Row<T: Lane> = [T; 4];
 
     const NOWHERE: [Lanes; 10] = {
         let mut fields = [[0.0; LANES]; 10];
@@ -84,11 +89,11 @@ impl InLanes for Stretch {
     };
     const NO_ROW: [Lanes; 4] = [[0.0; LANES]; 4];
 
-    fn fields_of<T: Copy + Debug>(value: T) -> [T; 10] {
+    fn fields_of<T: Lane>(value: T) -> [T; 10] {
         [value; 10]
     }
 
-    fn row_of<T: Copy + Debug>(value: T) -> [T; 4] {
+    fn row_of<T: Lane>(value: T) -> [T; 4] {
         [value; 4]
     }
 
@@ -150,18 +155,18 @@ impl InLanes for Stretch {
 
 impl InLanes for CameraSphere {
     /// The centre, and the square of the radius.
-    type Fields<T: Copy + Debug> = [T; 4];
-    type Row<T: Copy + Debug> = [T; 0];
+    type Fields<T: Lane> = [T; 4];
+    type Row<T: Lane> = [T; 0];
 
     // However large the tile, no distance is less than this.
     const NOWHERE: [Lanes; 4] = [[0.0; LANES], [0.0; LANES], [0.0; LANES], [-1.0; LANES]];
     const NO_ROW: [Lanes; 0] = [];
 
-    fn fields_of<T: Copy + Debug>(value: T) -> [T; 4] {
+    fn fields_of<T: Lane>(value: T) -> [T; 4] {
         [value; 4]
     }
 
-    fn row_of<T: Copy + Debug>(_: T) -> [T; 0] {
+    fn row_of<T: Lane>(_: T) -> [T; 0] {
         []
     }
 

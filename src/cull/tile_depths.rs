@@ -109,6 +109,18 @@ impl TileDepths {
         self.around[index] = around;
     }
 
+    /// Which of the intervals of `tile` holds `depth`, the first of them if there are several.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such tile.
+    pub fn interval_of(&self, tile: [u32; 2], depth: f32) -> Option<u32> {
+        let [x, y] = tile.map(|n| n as usize);
+        let mut intervals = self.depths(x, y).iter();
+        let holds = |[near, far]: &[f32; 2]| (*near..=*far).contains(&depth);
+        intervals.position(holds).map(|interval| interval as u32)
+    }
+
     /// Whether no interval of any tile has surfaces.
     pub fn is_empty(&self) -> bool {
         self.around.iter().all(|depths| *depths == NONE)
@@ -169,6 +181,10 @@ pub(super) struct Area {
 impl Area {
     pub fn size(self) -> [usize; 2] {
         [0, 1].map(|i| self.max[i] - self.min[i])
+    }
+
+    pub fn is_all_of(self, tiles: &TileDepths) -> bool {
+        self.size() == tiles.all().size()
     }
 
     /// How many times it is cut until its parts have few tiles.

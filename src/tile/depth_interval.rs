@@ -1,4 +1,4 @@
-use crate::{Error, error};
+use crate::{Error, error, math};
 
 /// The depths from `near` to `far`, both included, that a tile's surfaces lie in.
 ///
@@ -94,6 +94,40 @@ impl DepthInterval {
             Self::around(depths.clone().filter(|depth| *depth <= middle)),
             Self::around(depths.filter(|depth| *depth > middle)),
         ]
+    }
+
+    /// The interval cut into `count` slices, each as many times as deep at its end as at its beginning:
+    /// what clustered shading divides the view into [Olsson et al. 2012]. Neighbours share their depth, and
+    /// the first and the last one end where the interval does. None for no slices.
+    ///
+    /// Of an interval that begins nearer than 2⁻²⁰ of where it ends, the first slice takes in what is nearer
+    /// than that.
+    ///
+    /// ```
+    /// use stochastic_light_culling::DepthInterval;
+    ///
+    /// let view = DepthInterval::new(0.5, 8.0)?;
+    /// let ends = view.exponential_slices(4).map(|slice| slice.far());
+    /// assert!(ends.eq([1.0, 2.0, 4.0, 8.0]));
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
+    pub fn exponential_slices(&self, count: u32) -> impl Iterator<Item = Self> + Clone + use<> {
+        const NEAREST: f32 = 1.0 / 1_048_576.0;
+        let Self { near, far } = *self;
+        let first = near.max(NEAREST * far);
+        let cut = move |slice: u32| match slice {
+            0 => near,
+            _ if slice == count => far,
+            _ => {
+                let share = slice as f32 / count as f32;
+                // NaN, where all depths are zero, is neither the greater nor the lesser.
+                (first * math::power(far / first, share)).max(near).min(far)
+            }
+        };
+        (0..count).map(move |slice| Self {
+            near: cut(slice),
+            far: cut(slice + 1).max(cut(slice)),
+        })
     }
 
     fn middle(&self) -> f32 {

@@ -4,14 +4,14 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use fastrand::Rng;
 use stochastic_light_culling::{
-    Bounded, Conductor, ConstantLobe, Dielectric, Direction, Ggx, GgxLobe, LambertLobe,
-    MaskingShadowing, NoFresnel, Roulette, Schlick, Vpl, Xi, glam::Vec3,
+    AnisotropicGgx, AnisotropicGgxLobe, Bounded, Conductor, ConstantLobe, Dielectric, Direction,
+    Ggx, GgxLobe, LambertLobe, MaskingShadowing, NoFresnel, Roulette, Schlick, Vpl, Xi, glam::Vec3,
 };
 use twofloat::TwoFloat as Real;
 
-use super::{Bound, direction, log_uniform, unit_vector, up_to_one};
+use super::{Bound, chance, direction, log_uniform, unit_vector, up_to_one};
 use crate::reference::exact::{Exact, value};
-use crate::reference::{Brdf, Fresnel, Masking, Vector};
+use crate::reference::{Brdf, Fresnel, GivenFresnel, Masking, Vector};
 
 /// A light in one frame.
 #[derive(Clone, Copy, Debug)]
@@ -37,14 +37,16 @@ impl Light {
                 albedo: up_to_one(rng, 1e-6) as f32,
             },
             1 => Brdf::Constant,
+            2..8 => Brdf::Anisotropic {
+                roughness: two_roughnesses(rng),
+                tangent: direction(unit_vector(rng)),
+                fresnel: fresnel(rng),
+                masking: masking(rng),
+            },
             _ => Brdf::Ggx {
                 roughness: up_to_one(rng, 1e-6) as f32,
                 fresnel: fresnel(rng),
-                masking: if rng.bool() {
-                    Masking::HeightCorrelated
-                } else {
-                    Masking::Separable
-                },
+                masking: masking(rng),
             },
         };
         Self::with(rng, brdf, mu, range, distance)
@@ -58,7 +60,7 @@ impl Light {
         let incoming = tangent * (1.0 - mu * mu).sqrt() + normal * mu;
         let normal = direction(normal);
         let mut light = Self {
-            brdf,
+            brdf: laid_on(normal, brdf),
             normal,
             // Normal incidence is so to the last bit.
             incoming: if mu == 1.0 {
@@ -88,7 +90,7 @@ impl Light {
     pub fn peak(&self) -> Exact {
         let (n, w) = (self.unit_normal(), self.unit_incoming());
         match self.brdf {
-            Brdf::Ggx { .. } => n * (n.dot(w) * 2.0) - w,
+            Brdf::Ggx { .. } | Brdf::Anisotropic { .. } => n * (n.dot(w) * 2.0) - w,
             _ => n,
         }
     }
@@ -113,6 +115,7 @@ impl Light {
         match rng.u8(0..10) {
             0 => self.peak().unit(),
             1 => exact(unit_vector(rng)).unit(),
+            3..6 if matches!(self.brdf, Brdf::Anisotropic { .. }) => self.mirrored_by_facet(rng),
             2 => {
                 let tangent = normal.cross(unit_vector(rng));
                 exact(tangent + normal * log_uniform(rng, 1e-8, 1.0)).unit()
@@ -124,6 +127,7 @@ impl Light {
     fn about_peak(&self, rng: &mut Rng) -> Exact {
         let width = match self.brdf {
             Brdf::Ggx { roughness, .. } => f64::from(roughness),
+            Brdf::Anisotropic { roughness, .. } => f64::from(roughness[rng.usize(0..2)]),
             _ => 1.0,
         };
         let peak = self.peak();
@@ -145,6 +149,27 @@ impl Light {
         (peak * (Real::from(1.0) - t * t) + side * (t * 2.0)).unit()
     }
 
+    /// Where a facet mirrors the light that is any of those that the roughness spreads evenly, often
+    /// one that leans along the tangent or the bitangent only.
+    fn mirrored_by_facet(&self, rng: &mut Rng) -> Exact {
+        let Brdf::Anisotropic {
+            roughness, tangent, ..
+        } = self.brdf
+        else {
+            return self.peak().unit();
+        };
+        let (n, w) = (self.unit_normal(), self.unit_incoming());
+        let across = n.cross(Exact::from(*tangent)).unit();
+        let along = across.cross(n);
+        let lean = |rng: &mut Rng, alpha: f32| {
+            let share = if chance(rng, 0.2) { 0.0 } else { rng.f64() };
+            f64::from(alpha) * (share * FRAC_PI_2).tan() * if rng.bool() { 1.0 } else { -1.0 }
+        };
+        let [x, y] = roughness.map(|alpha| Real::from(lean(rng, alpha)));
+        let facet = (n + along * x + across * y).unit();
+        facet * (facet.dot(w) * 2.0) - w
+    }
+
     /// The crate's bound of this light.
     pub fn bound(&self) -> Bound {
         match self.brdf {
@@ -152,6 +177,23 @@ impl Light {
             Brdf::Lambert { albedo } => {
                 let lobe = LambertLobe::new(albedo, self.normal).expect("in the domain");
                 Bound::Sphere(self.bound_of(lobe))
+            }
+            Brdf::Anisotropic {
+                roughness,
+                tangent,
+                fresnel,
+                masking,
+            } => {
+                let [along, across] = roughness;
+                let ggx = AnisotropicGgx::new(along, across).expect("in the domain");
+                let fresnel = GivenFresnel::try_from(fresnel).expect("in the domain");
+                let lobe =
+                    AnisotropicGgxLobe::new(ggx, fresnel, self.normal, tangent, self.incoming)
+                        .expect("laid on the surface");
+                Bound::Anisotropic(match masking {
+                    Masking::HeightCorrelated => self.bound_of(lobe),
+                    Masking::Separable => self.bound_of(lobe.separable()),
+                })
             }
             Brdf::Ggx {
                 roughness,
@@ -214,6 +256,49 @@ impl Light {
     fn roulette(&self) -> (Roulette, Xi) {
         let roulette = Roulette::new(self.delta).expect("in the domain");
         (roulette, Xi::new(self.xi).expect("in the domain"))
+    }
+}
+
+/// α_x and α_y: apart, nearly equal, and equal.
+fn two_roughnesses(rng: &mut Rng) -> [f32; 2] {
+    let alpha = up_to_one(rng, 1e-6);
+    let other = match rng.u8(0..6) {
+        0 => alpha,
+        1 => (alpha * (1.0 - log_uniform(rng, 1e-7, 0.1))).max(1e-6),
+        _ => up_to_one(rng, 1e-6),
+    };
+    let pair = if rng.bool() {
+        [alpha, other]
+    } else {
+        [other, alpha]
+    };
+    pair.map(|alpha| alpha as f32)
+}
+
+fn masking(rng: &mut Rng) -> Masking {
+    if rng.bool() {
+        Masking::HeightCorrelated
+    } else {
+        Masking::Separable
+    }
+}
+
+/// `brdf` with another tangent, if it has one that is nearly parallel to `normal`.
+pub fn laid_on(normal: Direction, brdf: Brdf) -> Brdf {
+    let normal = Vector::from(*normal);
+    match brdf {
+        Brdf::Anisotropic {
+            roughness,
+            tangent,
+            fresnel,
+            masking,
+        } if normal.cross(Vector::from(*tangent)).length() < 2e-6 => Brdf::Anisotropic {
+            roughness,
+            tangent: direction(normal.orthogonal()),
+            fresnel,
+            masking,
+        },
+        other => other,
     }
 }
 

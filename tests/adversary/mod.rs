@@ -5,7 +5,7 @@
 mod light;
 mod tile;
 
-pub use light::{Light, fresnel};
+pub use light::{Light, fresnel, laid_on};
 pub use tile::Tile;
 
 use fastrand::Rng;
@@ -22,6 +22,7 @@ pub enum Bound {
         spheroid: Spheroid,
         tight: Ellipsoid,
     },
+    Anisotropic(Ellipsoid),
     Sphere(Sphere),
 }
 
@@ -37,6 +38,7 @@ impl Bound {
         };
         let found = match *self {
             Self::Sphere(bound) => vec![("sphere", sphere(bound))],
+            Self::Anisotropic(bound) => vec![("anisotropic ellipsoid", ellipsoid(bound))],
             Self::Ggx { spheroid, tight } => vec![
                 ("spheroid", ellipsoid(spheroid.into())),
                 ("tight ellipsoid", ellipsoid(tight)),

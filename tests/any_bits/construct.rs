@@ -4,13 +4,13 @@ use std::hint::black_box;
 
 use fastrand::Rng;
 use stochastic_light_culling::{
-    Camera, Conductor, ConstantLobe, DepthInterval, Dielectric, Direction, Ellipsoid, Ggx, GgxLobe,
-    Interleave, LambertLobe, NoFresnel, PixelRectangle, Roulette, Schlick, Sphere, TileGrid,
-    TileRectangle, Vpl, Xi,
+    AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, DepthInterval, Dielectric,
+    Direction, Ellipsoid, Ggx, GgxLobe, Interleave, LambertLobe, NoFresnel, PixelRectangle,
+    Roulette, Schlick, Sphere, TileGrid, TileRectangle, Vpl, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
 
-use crate::adversary::{Light, Tile};
+use crate::adversary::{Light, Tile, laid_on};
 use crate::bits::Bits;
 use crate::probe::{self, Shape};
 use crate::reference::Vector;
@@ -55,6 +55,14 @@ fn glossy(bits: &mut Bits, cameras: &[Camera]) {
     }
     if let Ok(conductor) = Conductor::new(bits.number(), bits.number()) {
         probe::ggx_lobe(&GgxLobe::new(ggx, conductor, normal, incoming), cameras);
+    }
+    if let (Ok(grain), Ok(tangent)) = (
+        AnisotropicGgx::new(ggx.roughness(), bits.number()),
+        Direction::new(bits.vector()),
+    ) {
+        if let Ok(lobe) = AnisotropicGgxLobe::new(grain, NoFresnel, normal, tangent, incoming) {
+            probe::grained_lobe(&lobe, cameras);
+        }
     }
 }
 
@@ -175,6 +183,21 @@ pub fn light_in_domain(bits: &mut Bits) {
     let brdf = match bits.byte() % 8 {
         0 if LambertLobe::new(albedo, Direction::Z).is_ok() => Brdf::Lambert { albedo },
         1 => Brdf::Constant,
+        2..5 => {
+            let [along, across] = [roughness, bits.number()];
+            let Ok(tangent) = Direction::new(bits.vector()) else {
+                return;
+            };
+            if AnisotropicGgx::new(along, across).is_err() {
+                return;
+            }
+            Brdf::Anisotropic {
+                roughness: [along, across],
+                tangent,
+                fresnel,
+                masking,
+            }
+        }
         _ if Ggx::new(roughness).is_ok() => Brdf::Ggx {
             roughness,
             fresnel,
@@ -186,7 +209,7 @@ pub fn light_in_domain(bits: &mut Bits) {
         return;
     };
     let light = Light {
-        brdf,
+        brdf: laid_on(normal, brdf),
         normal,
         incoming,
         position: bits.vector(),

@@ -1,8 +1,9 @@
 //! Every field of every constructor in turn, with each special number.
 
 use stochastic_light_culling::{
-    Camera, Conductor, ConstantLobe, DepthInterval, Dielectric, Direction, Ellipsoid, Error, Ggx,
-    GgxLobe, LambertLobe, NoFresnel, Roulette, Schlick, Sphere, TileRectangle, Vpl, Xi,
+    AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, DepthInterval, Dielectric,
+    Direction, Ellipsoid, Error, Ggx, GgxLobe, LambertLobe, NoFresnel, Roulette, Schlick, Sphere,
+    TileRectangle, Vpl, Xi,
     glam::{Mat3, Mat4, Vec2, Vec3},
 };
 
@@ -44,6 +45,15 @@ fn of_lobes() {
         [0.1],
         |[alpha]| Ggx::new(alpha),
         |ggx| probe::ggx_lobe(&lobe(*ggx), &cameras),
+    );
+    each_field(
+        [0.1, 0.3, 1.0, 2.0, 3.0],
+        |[along, across, x, y, z]| {
+            let grain = AnisotropicGgx::new(along, across)?;
+            let tangent = Direction::new(Vec3::new(x, y, z))?;
+            AnisotropicGgxLobe::new(grain, NoFresnel, Direction::Z, tangent, incoming)
+        },
+        |lobe| probe::grained_lobe(lobe, &cameras),
     );
     each_field([0.5], |[f0]| Schlick::new(f0), probe::fresnel);
     each_field([1.5], |[eta]| Dielectric::new(eta), probe::fresnel);

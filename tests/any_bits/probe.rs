@@ -1,9 +1,9 @@
 //! What must hold of everything that a constructor has accepted.
 
 use stochastic_light_culling::{
-    Bound, Bounded, Camera, CameraSphere, DepthInterval, Direction, Ellipsoid, Fresnel, GgxLobe,
-    Lobe, MaskingShadowing, PixelRectangle, Roulette, Sphere, Spheroid, Stretch, TileRectangle,
-    TileTest, Vpl, Xi,
+    AnisotropicGgxLobe, Bound, Bounded, Camera, CameraSphere, DepthInterval, Direction, Ellipsoid,
+    Fresnel, GgxLobe, Lobe, MaskingShadowing, PixelRectangle, Roulette, Sphere, Spheroid, Stretch,
+    TileRectangle, TileTest, Vpl, Xi,
     glam::{Mat3, Vec2, Vec3},
 };
 
@@ -49,6 +49,12 @@ impl Shape for Sphere {
                 touching(&test, camera);
             }
         }
+    }
+}
+
+impl Shape for Ellipsoid {
+    fn probe(&self, cameras: &[Camera]) {
+        ellipsoid(self, cameras);
     }
 }
 
@@ -129,6 +135,17 @@ where
             ellipsoid(&lobe.tight_bound().placed(position, scale), cameras);
         }
     }
+}
+
+pub fn grained_lobe<F>(lobe: &AnisotropicGgxLobe<F>, cameras: &[Camera])
+where
+    F: Fresnel + std::fmt::Debug,
+{
+    let away = *lobe.mirror_direction();
+    values(lobe, &[away, -away]);
+    values(&lobe.separable(), &[away, -away]);
+    light(*lobe, cameras);
+    light(lobe.separable(), cameras);
 }
 
 /// A lobe's light, from the dimmest to the brightest.

@@ -133,10 +133,60 @@ pub fn ggx_brdf() -> impl Strategy<Value = Brdf> {
     })
 }
 
+/// α_x and α_y: equal, nearly so, and decades apart.
+pub fn two_roughnesses() -> impl Strategy<Value = [f32; 2]> {
+    let near = (roughness(), log_uniform(1e-7, 0.1))
+        .prop_map(|(alpha, gap)| [alpha, (f64::from(alpha) * (1.0 - gap)).max(1e-3) as f32]);
+    prop_oneof![
+        4 => [roughness(), roughness()],
+        1 => near,
+        1 => roughness().prop_map(|alpha| [alpha; 2]),
+    ]
+}
+
+/// The tangent may be parallel to the normal: see [`laid_on`].
+pub fn anisotropic_brdf() -> impl Strategy<Value = Brdf> {
+    let tangent = unit_vector().prop_map(|v| Direction::new(v.to_f32()).unwrap());
+    (two_roughnesses(), tangent, ggx_brdf()).prop_map(|(roughness, tangent, brdf)| {
+        let Brdf::Ggx {
+            fresnel, masking, ..
+        } = brdf
+        else {
+            unreachable!("a GGX lobe is what was asked for")
+        };
+        Brdf::Anisotropic {
+            roughness,
+            tangent,
+            fresnel,
+            masking,
+        }
+    })
+}
+
+/// `brdf` with another tangent, if it has one that is nearly parallel to the normal of `lit`.
+pub fn laid_on(lit: &Lit, brdf: Brdf) -> Brdf {
+    let normal = lit.surface.normal;
+    match brdf {
+        Brdf::Anisotropic {
+            roughness,
+            tangent,
+            fresnel,
+            masking,
+        } if normal.cross(Vector::from(*tangent)).length() < 2e-6 => Brdf::Anisotropic {
+            roughness,
+            tangent: Direction::new(normal.orthogonal().to_f32()).unwrap(),
+            fresnel,
+            masking,
+        },
+        other => other,
+    }
+}
+
 pub fn brdf() -> impl Strategy<Value = Brdf> {
     let albedo = prop_oneof![3 => 0.001..=1.0_f32, 1 => Just(1.0_f32)];
     prop_oneof![
         4 => ggx_brdf(),
+        4 => anisotropic_brdf(),
         1 => albedo.prop_map(|albedo| Brdf::Lambert { albedo }),
         1 => Just(Brdf::Constant),
     ]

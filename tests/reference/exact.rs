@@ -71,7 +71,7 @@ pub fn value(brdf: Brdf, normal: Exact, incoming: Exact, outgoing: Exact) -> Rea
         Brdf::Constant => Real::from(0.25) / PI,
         _ if mu_o <= zero => zero,
         Brdf::Lambert { albedo } => mu_o * f64::from(albedo) / PI,
-        Brdf::Ggx { .. } if mu <= zero => zero,
+        Brdf::Ggx { .. } | Brdf::Anisotropic { .. } if mu <= zero => zero,
         Brdf::Ggx {
             roughness,
             fresnel,
@@ -85,13 +85,44 @@ pub fn value(brdf: Brdf, normal: Exact, incoming: Exact, outgoing: Exact) -> Rea
             let spread = alpha_squared * cosine * cosine + across.dot(across);
             let ndf = alpha_squared / (PI * spread * spread);
             let root = |c: Real| ((Real::from(1.0) - alpha_squared) * c * c + alpha_squared).sqrt();
-            let (root_i, root_o) = (root(mu), root(mu_o));
-            let g2_over_4mu = match masking {
-                Masking::HeightCorrelated => mu_o * 0.5 / (mu_o * root_i + mu * root_o),
-                Masking::Separable => mu_o / ((mu + root_i) * (mu_o + root_o)),
-            };
-            reflectance(fresnel, incoming.dot(half)) * ndf * g2_over_4mu
+            let g2 = g2_over_four_cosines(masking, [mu, mu_o], [mu, mu_o].map(root));
+            reflectance(fresnel, incoming.dot(half)) * ndf * g2
         }
+        Brdf::Anisotropic {
+            roughness,
+            tangent,
+            fresnel,
+            masking,
+        } => {
+            let [alpha_x, alpha_y] = roughness.map(|alpha| Real::from(f64::from(alpha)));
+            let bitangent = normal.cross(Exact::from(*tangent)).unit();
+            let tangent = bitangent.cross(normal);
+            // (α_x x)² + (α_y y)² + z²
+            let squared = |v: Exact, alpha_x: Real, alpha_y: Real| {
+                let [x, y] = [alpha_x * tangent.dot(v), alpha_y * bitangent.dot(v)];
+                let z = normal.dot(v);
+                x * x + y * y + z * z
+            };
+            let half = (incoming + outgoing).unit();
+            let one = Real::from(1.0);
+            let spread = squared(half, one / alpha_x, one / alpha_y);
+            let ndf = one / (PI * alpha_x * alpha_y * spread * spread);
+            let roots = [incoming, outgoing].map(|v| squared(v, alpha_x, alpha_y).sqrt());
+            let g2 = g2_over_four_cosines(masking, [mu, mu_o], roots);
+            reflectance(fresnel, incoming.dot(half)) * ndf * g2
+        }
+    }
+}
+
+/// G2/(4μ) for μ, μ_o and the roots of both.
+fn g2_over_four_cosines(
+    masking: Masking,
+    [mu, mu_o]: [Real; 2],
+    [root_i, root_o]: [Real; 2],
+) -> Real {
+    match masking {
+        Masking::HeightCorrelated => mu_o * 0.5 / (mu_o * root_i + mu * root_o),
+        Masking::Separable => mu_o / ((mu + root_i) * (mu_o + root_o)),
     }
 }
 

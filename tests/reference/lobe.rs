@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use stochastic_light_culling::Direction;
+
 use super::{Fresnel, Vector};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +16,13 @@ pub enum Masking {
 pub enum Brdf {
     Ggx {
         roughness: f32,
+        fresnel: Fresnel,
+        masking: Masking,
+    },
+    /// The tangent is in the plane of `tangent` and the normal, and at right angles to the normal.
+    Anisotropic {
+        roughness: [f32; 2],
+        tangent: Direction,
         fresnel: Fresnel,
         masking: Masking,
     },
@@ -40,6 +49,26 @@ impl Surface {
         self.normal * (2.0 * self.incident_cosine()) - self.incoming
     }
 
+    /// Where facets that are evenly spread for their roughness mirror the light.
+    pub fn mirrored_by_facets(
+        self,
+        roughness: [f32; 2],
+        tangent: Direction,
+    ) -> impl Iterator<Item = Vector> {
+        const NUMBER: u32 = 300;
+        let [along, across] = SurfaceFrame::new(self.normal, tangent).tangents;
+        let [alpha_x, alpha_y] = roughness.map(f64::from);
+        (0..NUMBER).map(move |i| {
+            let height = (f64::from(i) + 0.5) / f64::from(NUMBER);
+            let (radius, azimuth) = ((1.0 - height * height).sqrt(), 2.399_963 * f64::from(i));
+            let facet = along * (alpha_x * radius * azimuth.cos())
+                + across * (alpha_y * radius * azimuth.sin())
+                + self.normal * height;
+            let facet = facet.unit();
+            facet * (2.0 * facet.dot(self.incoming)) - self.incoming
+        })
+    }
+
     /// f·max(μ_o, 0).
     pub fn value(self, brdf: Brdf, outgoing: Vector) -> f64 {
         let (mu, mu_o) = (self.incident_cosine(), self.normal.dot(outgoing));
@@ -47,7 +76,7 @@ impl Surface {
             Brdf::Constant => 1.0 / (4.0 * PI),
             _ if mu_o <= 0.0 => 0.0,
             Brdf::Lambert { albedo } => f64::from(albedo) / PI * mu_o,
-            Brdf::Ggx { .. } if mu <= 0.0 => 0.0,
+            Brdf::Ggx { .. } | Brdf::Anisotropic { .. } if mu <= 0.0 => 0.0,
             Brdf::Ggx {
                 roughness,
                 fresnel,
@@ -58,6 +87,21 @@ impl Surface {
                 let f = fresnel.at(self.incoming.dot(half).clamp(0.0, 1.0));
                 let d = ggx_ndf(alpha, half, self.normal);
                 f * d * smith_g2(alpha, masking, mu, mu_o) / (4.0 * mu * mu_o) * mu_o
+            }
+            Brdf::Anisotropic {
+                roughness,
+                tangent,
+                fresnel,
+                masking,
+            } => {
+                let frame = SurfaceFrame::new(self.normal, tangent);
+                let direction = outgoing;
+                let [incoming, outgoing] = [self.incoming, direction].map(|v| frame.slopes(v));
+                let half = (self.incoming + direction).unit();
+                let f = fresnel.at(self.incoming.dot(half).clamp(0.0, 1.0));
+                let d = anisotropic_ndf(roughness, frame.slopes(half), half.dot(self.normal));
+                let g2 = anisotropic_g2(roughness, masking, incoming, outgoing);
+                f * d * g2 / (4.0 * mu * mu_o) * mu_o
             }
         }
     }
@@ -77,7 +121,64 @@ pub fn ggx_ndf(alpha: f64, half: Vector, normal: Vector) -> f64 {
 /// Λ(μ) [Heitz 2014, Eq. 72].
 fn lambda(alpha: f64, cosine: f64) -> f64 {
     let tangent_squared = (1.0 - cosine) * (1.0 + cosine) / (cosine * cosine);
-    0.5 * ((1.0 + alpha * alpha * tangent_squared.max(0.0)).sqrt() - 1.0)
+    lambda_of_slope(alpha * alpha * tangent_squared.max(0.0))
+}
+
+fn lambda_of_slope(stretched_slope_squared: f64) -> f64 {
+    0.5 * ((1.0 + stretched_slope_squared).sqrt() - 1.0)
+}
+
+/// Tangent and bitangent of a surface with a grain.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceFrame {
+    pub normal: Vector,
+    pub tangents: [Vector; 2],
+}
+
+impl SurfaceFrame {
+    pub fn new(normal: Vector, tangent: Direction) -> Self {
+        let tangent = Vector::from(*tangent);
+        let tangent = (tangent - normal * tangent.dot(normal)).unit();
+        Self {
+            normal,
+            tangents: [tangent, normal.cross(tangent)],
+        }
+    }
+
+    /// How far `direction` runs along the tangents for each step along the normal.
+    pub fn slopes(self, direction: Vector) -> [f64; 2] {
+        let height = direction.dot(self.normal);
+        self.tangents.map(|tangent| tangent.dot(direction) / height)
+    }
+}
+
+/// Σ (αᵢ slopeᵢ)²
+fn stretched_squared(factors: [f64; 2], slopes: [f64; 2]) -> f64 {
+    (factors[0] * slopes[0]).powi(2) + (factors[1] * slopes[1]).powi(2)
+}
+
+/// D as a function of the slopes of the half vector along both tangents [Heitz 2014].
+pub fn anisotropic_ndf(roughness: [f32; 2], slopes: [f64; 2], cosine: f64) -> f64 {
+    if cosine <= 0.0 {
+        return 0.0;
+    }
+    let [alpha_x, alpha_y] = roughness.map(f64::from);
+    let spread = 1.0 + stretched_squared([1.0 / alpha_x, 1.0 / alpha_y], slopes);
+    1.0 / (PI * alpha_x * alpha_y * (cosine * spread.sqrt()).powi(4))
+}
+
+pub fn anisotropic_g2(
+    roughness: [f32; 2],
+    masking: Masking,
+    incoming: [f64; 2],
+    outgoing: [f64; 2],
+) -> f64 {
+    let [a, b] = [incoming, outgoing]
+        .map(|slopes| lambda_of_slope(stretched_squared(roughness.map(f64::from), slopes)));
+    match masking {
+        Masking::HeightCorrelated => 1.0 / (1.0 + a + b),
+        Masking::Separable => 1.0 / ((1.0 + a) * (1.0 + b)),
+    }
 }
 
 pub fn smith_g1(alpha: f64, cosine: f64) -> f64 {

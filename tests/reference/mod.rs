@@ -9,12 +9,17 @@
 pub mod camera;
 pub mod exact;
 pub mod fresnel;
+pub mod given;
 pub mod lobe;
 pub mod shape;
 pub mod vector;
 
 pub use camera::View;
 pub use fresnel::Fresnel;
-pub use lobe::{Brdf, Masking, Surface, ggx_ndf, smith_g1, smith_g2};
+pub use given::GivenFresnel;
+pub use lobe::{
+    Brdf, Masking, Surface, SurfaceFrame, anisotropic_g2, anisotropic_ndf, ggx_ndf, smith_g1,
+    smith_g2,
+};
 pub use shape::Shape;
 pub use vector::Vector;

@@ -21,15 +21,16 @@ use super::LightBatch;
 use super::culler::{at_most, widest};
 use super::lanes::LANES;
 use crate::{
-    Bound, Bounded, Camera, ConstantLobe, Ellipsoid, Fresnel, GgxLobe, LambertLobe,
-    MaskingShadowing, Roulette, Sphere, Spheroid, Stretch, Vpl, Xi,
+    AnisotropicGgxLobe, Bound, Bounded, Camera, ConstantLobe, Ellipsoid, Fresnel, GgxLobe,
+    LambertLobe, MaskingShadowing, Roulette, Sphere, Spheroid, Stretch, Vpl, Xi,
 };
 
 /// What a [`BatchBuilder`] can make shapes of with their [own bound](Bounded): [`GgxLobe`],
-/// [`LambertLobe`] and [`ConstantLobe`].
+/// [`AnisotropicGgxLobe`], [`LambertLobe`] and [`ConstantLobe`].
 pub trait BatchLobe: Bounded + Source<Light = Vpl<Self>, Given = Xi> {}
 
 impl<F: Fresnel, G: MaskingShadowing> BatchLobe for GgxLobe<F, G> {}
+impl<F: Fresnel, G: MaskingShadowing> BatchLobe for AnisotropicGgxLobe<F, G> {}
 impl BatchLobe for LambertLobe {}
 impl BatchLobe for ConstantLobe {}
 
@@ -98,7 +99,8 @@ impl BatchBuilder {
     }
 
     /// Adds lights, each given by the number that lists will call it, itself, and its ξ in this frame,
-    /// with the [bound](Vpl::bound) of their lobe.
+    /// with the [bound](Vpl::bound) of their lobe. That of anisotropic lights is found one by one, and put
+    /// in place and before the camera in vectors.
     pub fn add<'a, L: BatchLobe + 'a>(
         &self,
         lights: impl IntoIterator<Item = (u32, &'a Vpl<L>, Xi)>,
@@ -107,7 +109,8 @@ impl BatchBuilder {
         self.fill::<L>(lights.into_iter(), batch);
     }
 
-    /// Adds lights as [`add`](Self::add) does, with their [tighter bound](Vpl::tight_bound).
+    /// Adds lights as [`add`](Self::add) does, with their [tighter bound](Vpl::tight_bound), which is
+    /// found one by one.
     pub fn add_tight<'a, F: Fresnel + 'a, G: MaskingShadowing + 'a>(
         &self,
         lights: impl IntoIterator<Item = (u32, &'a Vpl<GgxLobe<F, G>>, Xi)>,

@@ -1,7 +1,6 @@
 //! What shapes are made of: lights, and bounds with the places that they are put in.
 
 use core::f32::consts::FRAC_1_PI;
-use core::fmt::Debug;
 use core::marker::PhantomData;
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
@@ -13,10 +12,10 @@ use super::view::{Ellipsoids, Seen, Spheres, View};
 use crate::bound::AXIS_TILT_RADIANS;
 use crate::cull::batch::Chunk;
 use crate::cull::lanes::{LANES, Lanes, load, parts, splat, store};
-use crate::cull::shape::InLanes;
+use crate::cull::shape::{InLanes, Lane};
 use crate::{
-    BatchShape, Bound, Bounded, CameraSphere, ConstantLobe, Ellipsoid, Fresnel, GgxLobe,
-    LambertLobe, MaskingShadowing, Roulette, Sphere, Spheroid, Stretch, Vpl, Xi,
+    AnisotropicGgxLobe, BatchShape, Bound, Bounded, CameraSphere, ConstantLobe, Ellipsoid, Fresnel,
+    GgxLobe, LambertLobe, MaskingShadowing, Roulette, Sphere, Spheroid, Stretch, Vpl, Xi,
 };
 
 /// Something that shapes are made of, sixteen at a time.
@@ -26,11 +25,11 @@ pub trait Source: Copy {
     type Given: Copy;
     type Shape: BatchShape;
     /// The numbers of a light, each of type `T`.
-    type Numbers<T: Copy + Debug>: Copy + Debug + AsRef<[T]> + AsMut<[T]>;
+    type Numbers<T: Lane>: Lane + AsRef<[T]> + AsMut<[T]>;
     /// What a light has besides numbers.
     type Rest: Copy;
 
-    fn numbers_of<T: Copy + Debug>(value: T) -> Self::Numbers<T>;
+    fn numbers_of<T: Lane>(value: T) -> Self::Numbers<T>;
     fn numbers(light: &Self::Light, given: Self::Given) -> Self::Numbers<f32>;
     fn rest(light: &Self::Light) -> Self::Rest;
 
@@ -146,10 +145,10 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
     type Given = Xi;
     type Shape = Stretch;
     /// The position, Φ, ξ, n, ω_i, μ, √(kμ² + α²) and α.
-    type Numbers<T: Copy + Debug> = [T; 14];
+    type Numbers<T: Lane> = [T; 14];
     type Rest = F;
 
-    fn numbers_of<T: Copy + Debug>(value: T) -> [T; 14] {
+    fn numbers_of<T: Lane>(value: T) -> [T; 14] {
         [value; 14]
     }
 
@@ -264,10 +263,10 @@ impl Source for LambertLobe {
     type Given = Xi;
     type Shape = CameraSphere;
     /// The position, Φ, ξ, n and ρ.
-    type Numbers<T: Copy + Debug> = [T; 9];
+    type Numbers<T: Lane> = [T; 9];
     type Rest = ();
 
-    fn numbers_of<T: Copy + Debug>(value: T) -> [T; 9] {
+    fn numbers_of<T: Lane>(value: T) -> [T; 9] {
         [value; 9]
     }
 
@@ -309,10 +308,10 @@ impl Source for ConstantLobe {
     type Given = Xi;
     type Shape = CameraSphere;
     /// The position, Φ and ξ.
-    type Numbers<T: Copy + Debug> = [T; 5];
+    type Numbers<T: Lane> = [T; 5];
     type Rest = ();
 
-    fn numbers_of<T: Copy + Debug>(value: T) -> [T; 5] {
+    fn numbers_of<T: Lane>(value: T) -> [T; 5] {
         [value; 5]
     }
 
@@ -372,10 +371,10 @@ impl Source for Sphere {
     type Given = Place;
     type Shape = CameraSphere;
     /// The centre, the radius, the position and the scale.
-    type Numbers<T: Copy + Debug> = [T; 8];
+    type Numbers<T: Lane> = [T; 8];
     type Rest = ();
 
-    fn numbers_of<T: Copy + Debug>(value: T) -> [T; 8] {
+    fn numbers_of<T: Lane>(value: T) -> [T; 8] {
         [value; 8]
     }
 
@@ -412,10 +411,10 @@ impl Source for Spheroid {
     type Given = Place;
     type Shape = Stretch;
     /// The focus, the axis, r, α, the position and the scale.
-    type Numbers<T: Copy + Debug> = [T; 12];
+    type Numbers<T: Lane> = [T; 12];
     type Rest = ();
 
-    fn numbers_of<T: Copy + Debug>(value: T) -> [T; 12] {
+    fn numbers_of<T: Lane>(value: T) -> [T; 12] {
         [value; 12]
     }
 
@@ -530,10 +529,10 @@ impl Source for Ellipsoid {
     type Given = Place;
     type Shape = Stretch;
     /// Those of the ellipsoid, the position and the scale.
-    type Numbers<T: Copy + Debug> = [T; 22];
+    type Numbers<T: Lane> = [T; 22];
     type Rest = ();
 
-    fn numbers_of<T: Copy + Debug>(value: T) -> [T; 22] {
+    fn numbers_of<T: Lane>(value: T) -> [T; 22] {
         [value; 22]
     }
 
@@ -572,6 +571,66 @@ impl Source for Ellipsoid {
     }
 }
 
+/// The numbers of an ellipsoid around the origin, the position that it is put at, Φ and ξ.
+type OfLight<T> = [T; 23];
+
+#[inline]
+fn of_light(unit: &Ellipsoid, p: Vec3, flux: f32, xi: Xi) -> OfLight<f32> {
+    let mut numbers = [0.0; 23];
+    let (of_unit, of_place) = numbers.split_at_mut(18);
+    of_unit.copy_from_slice(&of_ellipsoid(unit));
+    of_place.copy_from_slice(&[p.x, p.y, p.z, flux, xi.get()]);
+    numbers
+}
+
+/// The stretches of the ellipsoids of lights.
+#[inline(always)]
+fn lit_ellipsoids<S: Simd>(
+    simd: S,
+    numbers: &OfLight<S::f32s>,
+    frame: &Frame,
+) -> (OfShape<S, Stretch>, S::mask32s) {
+    let [unit @ .., p_x, p_y, p_z, flux, xi] = *numbers;
+    let scale = scale(simd, &frame.roulette, flux, xi);
+    placed_ellipsoids(simd, unit, Vectors::new(p_x, p_y, p_z), scale, frame)
+}
+
+impl<F: Fresnel, G: MaskingShadowing> Source for AnisotropicGgxLobe<F, G> {
+    type Light = Vpl<Self>;
+    type Given = Xi;
+    type Shape = Stretch;
+    type Numbers<T: Lane> = OfLight<T>;
+    type Rest = ();
+
+    fn numbers_of<T: Lane>(value: T) -> OfLight<T> {
+        [value; 23]
+    }
+
+    #[inline]
+    fn numbers(light: &Self::Light, xi: Xi) -> OfLight<f32> {
+        let unit = light.lobe().unit_bound();
+        of_light(&unit, light.position(), light.flux(), xi)
+    }
+
+    #[inline]
+    fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn may_reach(light: &Self::Light, _: Xi) -> bool {
+        light.flux() > 0.0 && light.lobe().incident_cosine() > 0.0
+    }
+
+    #[inline(always)]
+    fn shapes<S: Simd>(
+        simd: S,
+        numbers: &OfLight<S::f32s>,
+        _: &[()],
+        frame: &Frame,
+    ) -> (OfShape<S, Stretch>, S::mask32s) {
+        lit_ellipsoids(simd, numbers, frame)
+    }
+}
+
 /// The tighter bound of a GGX lobe.
 #[derive(Clone, Copy, Debug)]
 pub struct Tight<F, G>(PhantomData<(F, G)>);
@@ -580,22 +639,17 @@ impl<F: Fresnel, G: MaskingShadowing> Source for Tight<F, G> {
     type Light = Vpl<GgxLobe<F, G>>;
     type Given = Xi;
     type Shape = Stretch;
-    /// Those of the ellipsoid, the position, Φ and ξ.
-    type Numbers<T: Copy + Debug> = [T; 23];
+    type Numbers<T: Lane> = OfLight<T>;
     type Rest = ();
 
-    fn numbers_of<T: Copy + Debug>(value: T) -> [T; 23] {
+    fn numbers_of<T: Lane>(value: T) -> OfLight<T> {
         [value; 23]
     }
 
     #[inline]
-    fn numbers(light: &Self::Light, xi: Xi) -> [f32; 23] {
-        let p = light.position();
-        let mut numbers = [0.0; 23];
-        let (unit, of_place) = numbers.split_at_mut(18);
-        unit.copy_from_slice(&of_ellipsoid(&light.lobe().tight_bound()));
-        of_place.copy_from_slice(&[p.x, p.y, p.z, light.flux(), xi.get()]);
-        numbers
+    fn numbers(light: &Self::Light, xi: Xi) -> OfLight<f32> {
+        let unit = light.lobe().tight_bound();
+        of_light(&unit, light.position(), light.flux(), xi)
     }
 
     #[inline]
@@ -609,12 +663,10 @@ impl<F: Fresnel, G: MaskingShadowing> Source for Tight<F, G> {
     #[inline(always)]
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &[S::f32s; 23],
+        numbers: &OfLight<S::f32s>,
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, Stretch>, S::mask32s) {
-        let [unit @ .., p_x, p_y, p_z, flux, xi] = *numbers;
-        let scale = scale(simd, &frame.roulette, flux, xi);
-        placed_ellipsoids(simd, unit, Vectors::new(p_x, p_y, p_z), scale, frame)
+        lit_ellipsoids(simd, numbers, frame)
     }
 }
