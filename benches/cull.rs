@@ -1,4 +1,4 @@
-//! Culling: the two fixed workloads, and how the time grows with lights and tiles.
+//! Culling: making lights ready, the two fixed workloads, and how the time grows with lights and tiles.
 #![allow(
     missing_docs,
     reason = "criterion_group! makes a public function without any"
@@ -6,6 +6,8 @@
 
 #[path = "cull/baseline.rs"]
 mod baseline;
+#[path = "cull/building.rs"]
+mod building;
 #[path = "cull/growth.rs"]
 mod growth;
 #[path = "../tests/workload/mod.rs"]
@@ -92,5 +94,5 @@ fn growth(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, workloads, growth);
+criterion_group!(benches, building::building, workloads, growth);
 criterion_main!(benches);

@@ -175,7 +175,10 @@ pub use brdf::{
 };
 pub use camera::Camera;
 #[cfg(feature = "cull")]
-pub use cull::{BatchShape, CullCounters, Culler, LightBatch, LightLists, TileDepths};
+pub use cull::{
+    BatchBound, BatchBuilder, BatchLobe, BatchShape, CullCounters, Culler, DepthOrder, LightBatch,
+    LightLists, TileDepths,
+};
 pub use direction::Direction;
 pub use error::Error;
 #[cfg(feature = "bytemuck")]

@@ -18,6 +18,8 @@ mod table;
 mod triaxial;
 
 pub use ellipsoid::Ellipsoid;
+#[cfg(feature = "cull")]
+pub(crate) use ggx::AXIS_TILT_RADIANS;
 pub use sphere::Sphere;
 pub use spheroid::Spheroid;
 

@@ -128,11 +128,12 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         }
     }
 
+    /// F.
     pub(crate) fn fresnel(&self) -> &F {
         &self.fresnel
     }
 
-    /// √(kμ² + α²)
+    /// √(kμ² + α²), the root of G1(μ).
     pub(crate) fn incident_root(&self) -> f32 {
         self.incident_root
     }

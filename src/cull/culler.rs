@@ -71,14 +71,7 @@ impl<T: BatchShape> Culler<T> {
     ///
     /// On x86 16 is AVX-512, 8 is AVX2, and 4 is SSE; elsewhere there is but one width.
     pub fn with_lanes(lanes: usize) -> Self {
-        let widest = widest();
-        #[cfg(target_arch = "x86_64")]
-        let widest = match lanes {
-            ..8 => widest.as_sse2().map_or(widest, Level::Sse2),
-            8..16 => widest.as_avx2().map_or(widest, Level::Avx2),
-            16.. => widest,
-        };
-        Self::with_level(widest)
+        Self::with_level(at_most(lanes))
     }
 
     fn with_level(level: Level) -> Self {
@@ -141,8 +134,20 @@ pub(super) fn counted(
 }
 
 /// Without `std` there is no asking the processor: what the target is compiled for.
-fn widest() -> Level {
+pub(super) fn widest() -> Level {
     Level::try_detect().unwrap_or(Level::baseline())
+}
+
+/// The widest vectors of at most `lanes` lanes, where there is a choice.
+pub(super) fn at_most(lanes: usize) -> Level {
+    let widest = widest();
+    #[cfg(target_arch = "x86_64")]
+    let widest = match lanes {
+        ..8 => widest.as_sse2().map_or(widest, Level::Sse2),
+        8..16 => widest.as_avx2().map_or(widest, Level::Avx2),
+        16.. => widest,
+    };
+    widest
 }
 
 impl<T: BatchShape> Default for Culler<T> {
