@@ -32,7 +32,7 @@
 //!
 //! Each knot is enlarged until no cell around it is left by a sample, and by 1.5 % more. That the
 //! interpolated ellipsoids then enclose the surface, for every α in \[0, 1\] and every θ, is what
-//! `tests/certificate` proves cell by cell in interval arithmetic. It proves ‖y‖² ≤ 1 − 10⁻⁴, so that
+//! `tests/certificate` proves cell by cell in interval arithmetic. It proves ‖y‖² ≤ 1 − 2·10⁻⁴, so that
 //! the rounding of three coordinates, each to some ten units in the last place, and of the
 //! interpolation is paid for; what comes after is counted in `ARCHITECTURE.md`.
 //!

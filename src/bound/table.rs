@@ -48,6 +48,13 @@ fn split(x: f32, knots: u16) -> (usize, f32) {
     (knot as usize, x - knot as f32)
 }
 
+/// The ellipsoid at a knot, which the certificate is of.
+#[allow(dead_code, reason = "the crate itself only interpolates")]
+pub(crate) fn knot([i, j, k]: [usize; 3]) -> [f32; NUMBERS] {
+    let [a, b, c, d, e, f, ..] = TABLE[(i * INCIDENCES + j) * REFLECTANCES + k];
+    [a, b, c, d, e, f]
+}
+
 #[derive(Clone, Copy)]
 struct Knot(Vec4, Vec4);
 
