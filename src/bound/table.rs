@@ -1,6 +1,6 @@
 //! The smallest ellipsoids around GGX lobes, over three coordinates, and their interpolation.
 //!
-//! Made and proved by `examples/tabulate.rs`; `tests/certificate` proves a part anew.
+//! Made by `examples/tabulate.rs`, which can also prove cells of it (`tests/certificate`).
 
 use glam::Vec4;
 

@@ -18,9 +18,9 @@ fn tau(alpha: f64, y: f64) -> Interval {
         let m = 0.5 * (lo + hi);
         let s = y - m;
         if s * (1.0 - m * m) - alpha * m * (1.0 - s * s) > 0.0 {
-            lo = m
+            lo = m;
         } else {
-            hi = m
+            hi = m;
         }
     }
     let mut e = 1e-14;

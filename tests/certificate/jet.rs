@@ -146,6 +146,11 @@ impl Mul for Jet {
 
 impl Div for Jet {
     type Output = Self;
+
+    #[expect(
+        clippy::suspicious_arithmetic_impl,
+        reason = "a quotient is a product with a reciprocal"
+    )]
     fn div(self, other: Self) -> Self {
         self * other.reciprocal()
     }
