@@ -101,17 +101,47 @@ fn points([x, y, z]: [f64; 3], [steps, steps_across]: [usize; 2]) -> Vec<[f64; 3
         aol,
     };
     let fresnel = |cosine: f64| z.powi(4) + (1.0 - z.powi(4)) * (1.0 - cosine).powi(5);
+    let at = |phi: f64, psi: f64| {
+        let ((up, along), (across, rest)) = (phi.sin_cos(), psi.sin_cos());
+        let m = [rest * along, across, rest * up];
+        let point = lobe.point(alpha.powi(2) + (1.0 - alpha.powi(2)) * m[2].powi(2), m);
+        let is_above = point.e > 0.0;
+        is_above.then(|| {
+            let squared = masked(&lobe, &point) * fresnel(point.t) / fresnel(c);
+            point.z.map(|zeta| squared.sqrt() * zeta)
+        })
+    };
+    let step = PI / steps as f64;
     let mut points = vec![[0.0; 3]];
-    for i in 0..steps {
-        let (up, along) = (PI * (i as f64 + 0.5) / steps as f64).sin_cos();
-        for j in 0..steps_across {
-            let (across, rest) = (FRAC_PI_2 * j as f64 / steps_across as f64).sin_cos();
-            let m = [rest * along, across, rest * up];
-            let point = lobe.point(alpha.powi(2) + (1.0 - alpha.powi(2)) * m[2].powi(2), m);
-            if point.e > 0.0 {
-                let squared = masked(&lobe, &point) * fresnel(point.t) / fresnel(c);
-                points.push(point.z.map(|zeta| squared.sqrt() * zeta));
+    for j in 0..steps_across {
+        let psi = FRAC_PI_2 * j as f64 / steps_across as f64;
+        for i in 0..steps {
+            let phi = step * (i as f64 + 0.5);
+            let (here, next) = (at(phi, psi), at(phi + step, psi));
+            points.extend(here);
+            if here.is_some() == next.is_some() {
+                continue;
             }
+            // At grazing incidence F and G2 leave the lobe an edge at the horizon.
+            let (mut above, mut below) = (phi, phi + step);
+            if here.is_none() {
+                (above, below) = (below, above);
+            }
+            for _ in 0..40 {
+                let middle = 0.5 * (above + below);
+                if at(middle, psi).is_some() {
+                    above = middle;
+                } else {
+                    below = middle;
+                }
+            }
+            let inward = step * (above - below).signum();
+            points.extend(
+                [0.0, 0.03, 0.1, 0.3]
+                    .map(|share| at(above + share * inward, psi))
+                    .iter()
+                    .flatten(),
+            );
         }
     }
     points
