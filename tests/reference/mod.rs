@@ -9,12 +9,14 @@
 pub mod camera;
 pub mod exact;
 pub mod fresnel;
+pub mod frustum;
 pub mod lobe;
 pub mod shape;
 pub mod vector;
 
 pub use camera::View;
 pub use fresnel::Fresnel;
+pub use frustum::Frustum;
 pub use lobe::{Brdf, Masking, Surface, ggx_ndf, smith_g1, smith_g2};
 pub use shape::Shape;
 pub use vector::Vector;
