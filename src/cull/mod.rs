@@ -15,7 +15,8 @@
 //! The lanes of a vector do what [`TileTest::touches`](crate::TileTest::touches) does, operation by
 //! operation, so the lists are those of the scalar test. A block holds its tiles' rectangles and depths,
 //! and no operation of the test is but monotone, nor is rounding: what touches a tile touches its block,
-//! bit for bit, without any margin.
+//! bit for bit, without any margin. What the exact test then rejects is its own promise: see
+//! [`TileTest::touches_exactly`](crate::TileTest::touches_exactly).
 
 // A function that is not inlined is compiled for the least of processors: its vectors would not be.
 #![allow(clippy::inline_always)]
@@ -23,6 +24,7 @@
 mod batch;
 mod block;
 mod culler;
+mod exact;
 mod filter;
 mod lanes;
 mod lists;
