@@ -273,7 +273,7 @@ fn finds_the_known_lights_of_the_fixed_workloads() {
     }
 }
 
-/// As parry3d, an independent implementation, decides too: `cargo bench --bench exact`.
+/// As parry3d decides too, but for three pairs: `benches/cull.rs` compares them.
 #[test]
 fn exact_test_finds_the_known_lights_of_the_fixed_workloads() {
     let frame = workload::frame();

@@ -98,13 +98,14 @@ impl Frustum {
         for _ in 0..MOST_STEPS {
             let nearest = plane.nearest(self, z);
             let [squared, slope, apart] = self.seen_along(nearest.way);
-            let (apart, touching) = (
-                apart * apart.abs() - squared * self.radius_squared,
-                self.radius_squared - squared,
+            let beyond = apart * apart.abs() - squared * self.radius_squared;
+            // Both in one: which of them it is could not be guessed. No NaN rejects.
+            let (is_open, is_apart) = (
+                greater(self.radius_squared - squared, beyond) < 0.0,
+                beyond > 0.0,
             );
-            // Both in one: which of them it is could not be guessed.
-            if !(greater(touching, apart) < 0.0) {
-                return !(apart > 0.0);
+            if !is_open {
+                return !is_apart;
             }
             // The least is on the side to which g falls.
             if slope > 0.0 {

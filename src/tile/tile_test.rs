@@ -43,17 +43,16 @@ impl TileTest for Stretch {
     /// ```
     /// use stochastic_light_culling::{
     ///     Camera, DepthInterval, Ellipsoid, Stretch, TileRectangle, TileTest,
-    ///     glam::{Mat3, Quat, Vec2, Vec3},
+    ///     glam::{Mat3, Vec2, Vec3},
     /// };
     ///
-    /// // A needle, askew before a small tile to its right: the box around the tile's image meets the
-    /// // unit sphere, the image does not.
-    /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
-    /// let askew = Mat3::from_quat(Quat::from_rotation_z(0.785));
-    /// let needle = Ellipsoid::new(Vec3::new(0.0, 0.0, -10.0), askew, Vec3::new(3.0, 0.1, 0.1))?;
-    /// let light = Stretch::new(&needle, &camera).expect("not empty");
-    /// let tile = TileRectangle::new(Vec2::new(0.03, -0.12), Vec2::new(0.2, 0.0))?;
-    /// let depths = DepthInterval::new(10.0, 10.1)?;
+    /// // Beside a deep tile far off the axis, but in the box around it.
+    /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.5, 1.0, 0.1..100.0)?;
+    /// let center = Vec3::new(5.5, 0.0, -5.2);
+    /// let ellipsoid = Ellipsoid::new(center, Mat3::IDENTITY, Vec3::new(0.5, 1.0, 0.5))?;
+    /// let light = Stretch::new(&ellipsoid, &camera).expect("not empty");
+    /// let tile = TileRectangle::new(Vec2::new(0.5, 0.0), Vec2::new(0.6, 0.1))?;
+    /// let depths = DepthInterval::new(5.0, 10.0)?;
     /// assert!(light.touches(&tile, &depths));
     /// assert!(!light.touches_exactly(&tile, &depths));
     /// # Ok::<(), stochastic_light_culling::Error>(())
