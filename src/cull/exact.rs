@@ -16,9 +16,23 @@ pub(super) struct Tested {
 
 /// Appends the lights that touch the tile with these `sides`, exactly, to `lists`.
 ///
-/// The box test is done in lanes, as everywhere, and the exact one light by light.
-#[inline(always)]
+/// The box test is done in lanes, as everywhere, and the exact one light by light. A function of its own,
+/// so that culling without it is compiled as if it were not there.
+#[inline(never)]
 pub(super) fn list_exactly<S: Simd, T: BatchShape>(
+    simd: S,
+    lights: &LightBatch<T>,
+    sides: [[f32; 2]; 3],
+    lists: &mut LightLists,
+) -> Tested {
+    simd.vectorize(
+        #[inline(always)]
+        || list(simd, lights, sides, lists),
+    )
+}
+
+#[inline(always)]
+fn list<S: Simd, T: BatchShape>(
     simd: S,
     lights: &LightBatch<T>,
     sides: [[f32; 2]; 3],
@@ -53,7 +67,7 @@ pub(super) fn list_exactly<S: Simd, T: BatchShape>(
     }
 }
 
-#[inline]
+#[inline(always)]
 fn meets<T: BatchShape>(chunk: &Chunk<T>, lane: usize, sides: [[f32; 2]; 3]) -> bool {
     let mut fields = T::fields_of(0.0);
     for (field, lanes) in fields.as_mut().iter_mut().zip(chunk.fields.as_ref()) {

@@ -145,7 +145,7 @@ impl InLanes for Stretch {
         length_squared::<S>(x, y, z).simd_gt(S::f32s::splat(simd, 1.0))
     }
 
-    #[inline]
+    #[inline(always)]
     fn meets(fields: &[f32; 10], sides: [[f32; 2]; 3]) -> bool {
         let [m_11, m_12, m_13, m_21, m_22, m_23, m, x, y, z] = *fields;
         let axes = [
@@ -204,7 +204,7 @@ impl InLanes for CameraSphere {
         length_squared::<S>(x, y, z).simd_gt(load(simd, radius_squared, part))
     }
 
-    #[inline]
+    #[inline(always)]
     fn meets(fields: &[f32; 4], sides: [[f32; 2]; 3]) -> bool {
         let [x, y, z, radius_squared] = *fields;
         Frustum::around_sphere(Vec3::new(x, y, z), radius_squared, sides).meets_ball()

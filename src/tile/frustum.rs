@@ -28,6 +28,11 @@
 //! in the middle. Any R will do, so no rounding of the search counts, and that of the plane, in `f64`,
 //! is 10⁻⁷ of what the box test's in `f32` has been paid for: see `ARCHITECTURE.md`.
 
+#![allow(
+    clippy::inline_always,
+    reason = "so that a culler has it compiled for its own processor"
+)]
+
 use glam::Vec3;
 
 use crate::math;
@@ -55,7 +60,7 @@ pub(crate) struct Frustum {
 impl Frustum {
     /// The image of the tile with these slopes across and down, and these depths, under the matrix with
     /// columns `axes`, whose third row is (0, 0, m); and the ball around `center`.
-    #[inline]
+    #[inline(always)]
     pub fn new(
         axes: [Vec3; 3],
         [across, down, depths]: [[f32; 2]; 3],
@@ -80,14 +85,14 @@ impl Frustum {
     }
 
     /// The tile itself, and a ball.
-    #[inline]
+    #[inline(always)]
     pub fn around_sphere(center: Vec3, radius_squared: f32, sides: [[f32; 2]; 3]) -> Self {
         let radius = math::round_up(math::sqrt(radius_squared), 4);
         Self::new(Vec3::AXES, sides, center, [radius, radius_squared])
     }
 
     /// Whether the ball touches the tile; true of what is not finite.
-    #[inline]
+    #[inline(always)]
     pub fn meets_ball(&self) -> bool {
         if self.depths.min > self.depths.max {
             return false;
@@ -121,7 +126,7 @@ impl Frustum {
 
     /// The depth to try after those at both ends of `tried`, between which the least lies: `next`, or
     /// the middle if that leads out.
-    #[inline]
+    #[inline(always)]
     fn between(&self, tried: [f64; 2], next: f64) -> f64 {
         let next = self.depths.clamped(next);
         if tried[0] < next && next < tried[1] {
@@ -132,7 +137,7 @@ impl Frustum {
     }
 
     /// Of R: ‖R‖², s, and how far beyond c along it the tile begins, times ‖R‖.
-    #[inline]
+    #[inline(always)]
     fn seen_along(&self, [r0, r1, r2]: [f64; 3]) -> [f64; 3] {
         let ([a0, a1], [b0, b1], [d0, d1, m]) = (self.a, self.b, self.d);
         let ([x, y], [c0, c1, c2]) = (self.slopes, self.center);
@@ -150,7 +155,7 @@ impl Frustum {
     }
 
     /// Half the second derivative of g at `z`, on the side of a parabola's end that `nearest` is on.
-    #[inline]
+    #[inline(always)]
     fn curvature(&self, nearest: &Nearest, z: f64) -> f64 {
         let [r0, r1, _] = nearest.way;
         let w = [(r0 + self.center[0]) / z, (r1 + self.center[1]) / z];
@@ -178,7 +183,7 @@ struct Plane {
 }
 
 impl Plane {
-    #[inline]
+    #[inline(always)]
     fn new(frustum: &Frustum) -> Self {
         let (a, b) = (frustum.a, frustum.b);
         let ([d0, d1, _], [c0, c1, _]) = (frustum.d, frustum.center);
@@ -198,7 +203,7 @@ impl Plane {
     }
 
     /// The point of the section at depth `z` that is nearest to c.
-    #[inline]
+    #[inline(always)]
     fn nearest(&self, frustum: &Frustum, z: f64) -> Nearest {
         let [u_foot, v_foot] = self.foot.map(|[at_eye, per_depth]| at_eye - per_depth * z);
         let [us, vs] = frustum
@@ -238,7 +243,7 @@ struct Interval {
 }
 
 impl Interval {
-    #[inline]
+    #[inline(always)]
     fn new(min: f64, max: f64) -> Self {
         Self {
             min,
@@ -248,25 +253,25 @@ impl Interval {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn clamped(&self, x: f64) -> f64 {
         clamped(x, [self.min, self.max])
     }
 }
 
-#[inline]
+#[inline(always)]
 fn clamped(x: f64, [min, max]: [f64; 2]) -> f64 {
     lesser(greater(x, min), max)
 }
 
 /// The greater of both, `otherwise` where x is NaN: one instruction, unlike `f64::max`.
-#[inline]
+#[inline(always)]
 fn greater(x: f64, otherwise: f64) -> f64 {
     if x > otherwise { x } else { otherwise }
 }
 
 /// The lesser of both, `otherwise` where x is NaN.
-#[inline]
+#[inline(always)]
 fn lesser(x: f64, otherwise: f64) -> f64 {
     if x < otherwise { x } else { otherwise }
 }
