@@ -88,10 +88,11 @@
 //!
 //! **If a tile, as the `f32` numbers of its rectangle and depth interval define it, contains a point p
 //! with ‖p − q‖ ≤ l_max(ω_o), in exact arithmetic on the `f32` numbers that were given, then
-//! [`touches`](TileTest::touches) is true** of the stretched [`Spheroid`], of the tight ellipsoid, of
-//! that of an anisotropic lobe, of both of the spheroid's spheres, of a diffuse or constant light's [`Sphere`], and of the
-//! [`HalfSpace`] above the light's surface. Directions stand for the unit vectors along them, and a
-//! point of the world for its image under the camera's matrix.
+//! [`touches`](TileTest::touches) and [`touches_exactly`](TileTest::touches_exactly) are true** of the
+//! stretched [`Spheroid`], of the tight ellipsoid, of that of an anisotropic lobe, of both of the
+//! spheroid's spheres, of a diffuse or constant light's [`Sphere`], and of the [`HalfSpace`] above the
+//! light's surface. Directions stand for the unit vectors along them, and a point of the world for its
+//! image under the camera's matrix.
 //!
 //! This holds for every α from 2⁻²⁰ to 1, every μ > 0, ranges from 10⁻¹² to 10¹², lights up to 10⁶
 //! ranges from the origin and the eye, ξ from 2⁻³², views of any rotation, handedness and offset with
@@ -126,6 +127,7 @@
 //! # Sources
 //!
 //! - Dachsbacher & Stamminger 2006, *Splatting indirect illumination*.
+//! - Ericson 2005, *Real-time collision detection*.
 //! - Heitz 2014, *Understanding the masking-shadowing function in microfacet-based BRDFs*.
 //! - Jarzynski & Olano 2020, *Hash functions for GPU rendering*.
 //! - Keller 1997, *Instant radiosity*.

@@ -17,7 +17,9 @@
 //! The lanes of a vector do what [`TileTest::touches`](crate::TileTest::touches) does, operation by
 //! operation, so the lists are those of the scalar test. A block holds its tiles' rectangles and depths,
 //! and no operation of the test is but monotone, nor is rounding: what touches a tile touches its block,
-//! bit for bit, without any margin. What `build` makes has the bits that the scalar functions give.
+//! bit for bit, without any margin. What `build` makes has the bits that the scalar functions give. What
+//! the exact test then rejects is its own promise: see
+//! [`TileTest::touches_exactly`](crate::TileTest::touches_exactly).
 
 // A function that is not inlined is compiled for the least of processors: its vectors would not be.
 #![allow(clippy::inline_always)]
@@ -27,6 +29,7 @@ mod block;
 mod build;
 mod culler;
 mod depth_order;
+mod exact;
 mod filter;
 mod lanes;
 mod lists;

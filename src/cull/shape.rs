@@ -6,6 +6,7 @@ use glam::{Mat3, Vec3};
 use super::lanes::{
     self, Ends, LANES, Lanes, apart, apart_at_depths, length_squared, load, scaled, shifted,
 };
+use crate::tile::Frustum;
 use crate::{CameraSphere, Stretch, TileTest, math};
 
 /// What a [`LightBatch`](super::LightBatch) can hold: [`Stretch`] and [`CameraSphere`].
@@ -55,6 +56,10 @@ pub trait InLanes: Copy {
         row: &Self::Row<S::f32s>,
         tile: &TileLanes<S>,
     ) -> S::mask32s;
+
+    /// Whether the light with these `fields`, which passes the box test, touches the tile with these
+    /// `sides` across, down and in depth.
+    fn meets(fields: &Self::Fields<f32>, sides: [[f32; 2]; 3]) -> bool;
 }
 
 /// A tile, the same in each lane.
@@ -151,6 +156,17 @@ impl InLanes for Stretch {
         );
         length_squared::<S>(x, y, z).simd_gt(S::f32s::splat(simd, 1.0))
     }
+
+    #[inline(always)]
+    fn meets(fields: &[f32; 10], sides: [[f32; 2]; 3]) -> bool {
+        let [m_11, m_12, m_13, m_21, m_22, m_23, m, x, y, z] = *fields;
+        let axes = [
+            Vec3::new(m_11, m_21, 0.0),
+            Vec3::new(m_12, m_22, 0.0),
+            Vec3::new(m_13, m_23, m),
+        ];
+        Frustum::new(axes, sides, Vec3::new(x, y, z), [1.0; 2]).meets_ball()
+    }
 }
 
 impl InLanes for CameraSphere {
@@ -202,6 +218,12 @@ impl InLanes for CameraSphere {
         let y = apart_at_depths::<S>(load(simd, y, part), tile.down, tile.depths);
         let z = apart::<S>(load(simd, z, part), tile.depths);
         length_squared::<S>(x, y, z).simd_gt(load(simd, radius_squared, part))
+    }
+
+    #[inline(always)]
+    fn meets(fields: &[f32; 4], sides: [[f32; 2]; 3]) -> bool {
+        let [x, y, z, radius_squared] = *fields;
+        Frustum::around_sphere(Vec3::new(x, y, z), radius_squared, sides).meets_ball()
     }
 }
 

@@ -29,7 +29,17 @@ pub enum Bound {
 impl Bound {
     /// The names of the bounds by which the light is not found to touch `tile`.
     pub fn that_lose(&self, tile: &Tile) -> Vec<&'static str> {
-        let touches = |test: &dyn TileTest| test.touches(&tile.rectangle, &tile.depths);
+        self.that_fail(tile, |test| test.touches(&tile.rectangle, &tile.depths))
+    }
+
+    /// Those by which it is not found by the exact test.
+    pub fn that_lose_exactly(&self, tile: &Tile) -> Vec<&'static str> {
+        self.that_fail(tile, |test| {
+            test.touches_exactly(&tile.rectangle, &tile.depths)
+        })
+    }
+
+    fn that_fail(&self, tile: &Tile, touches: impl Fn(&dyn TileTest) -> bool) -> Vec<&'static str> {
         let sphere = |sphere: Sphere| {
             CameraSphere::new(&sphere, &tile.camera).is_some_and(|test| touches(&test))
         };
