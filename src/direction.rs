@@ -9,6 +9,14 @@ use crate::{Error, math};
 /// Unit length to a few units in the last place, so nothing after the constructor checks again. It
 /// dereferences to the [`Vec3`] that it holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        into = "crate::unchecked::Direction",
+        try_from = "crate::unchecked::Direction"
+    )
+)]
 pub struct Direction(Vec3);
 
 impl Direction {
@@ -55,6 +63,19 @@ impl Direction {
     pub(crate) fn from_unit(vector: Vec3) -> Self {
         debug_assert!((math::dot(vector, vector) - 1.0).abs() < 1e-6);
         Self(vector)
+    }
+
+    /// [`new`](Self::new), but for a vector that has unit length already, as near as `new` itself comes
+    /// to it, and is taken as it is: what was saved is what is read.
+    #[cfg(feature = "serde")]
+    pub(crate) fn of_unit_or_any_length(vector: Vec3) -> Result<Self, Error> {
+        // The length is off by 3.5u at most, its square by twice that.
+        const NEAR: f64 = 8.0 * math::UNIT_ROUNDOFF as f64;
+        if (math::dot(vector, vector) - 1.0).abs() <= NEAR {
+            Ok(Self(vector))
+        } else {
+            Self::new(vector)
+        }
     }
 
     /// The components, widened.

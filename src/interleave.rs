@@ -17,6 +17,8 @@ use crate::{Error, PixelRectangle};
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::Interleave"))]
 pub struct Interleave {
     image_size: [u32; 2],
     width: u32,
@@ -69,10 +71,10 @@ impl Interleave {
     }
 
     /// The pixel of the image that is `local` in `subregion`: the inverse of
-    /// [`split_pixel`](Self::split_pixel).
+    /// [`split_pixel`](Self::split_pixel). Outside the image, too, for a pixel that no subregion has.
     pub fn join_pixel(&self, subregion: u32, local: [u32; 2]) -> [u32; 2] {
         let phase = self.phase(subregion);
-        [0, 1].map(|i| local[i] * self.width + phase[i])
+        [0, 1].map(|i| local[i].saturating_mul(self.width).saturating_add(phase[i]))
     }
 
     /// The pixels of the image, edge to edge, that the pixels `local` of `subregion` lie within: what
@@ -82,7 +84,7 @@ impl Interleave {
             min: self.join_pixel(subregion, local.min),
             max: self
                 .join_pixel(subregion, local.max.map(|n| n.saturating_sub(1)))
-                .map(|n| n + 1),
+                .map(|n| n.saturating_add(1)),
         }
     }
 
@@ -95,8 +97,11 @@ impl Interleave {
     }
 
     /// The light that is `local` in `subregion`: the inverse of [`split_light`](Self::split_light).
+    /// Never past `u32::MAX`.
     pub fn join_light(&self, subregion: u32, local: u32) -> u32 {
-        local * self.subregions() + subregion
+        local
+            .saturating_mul(self.subregions())
+            .saturating_add(subregion)
     }
 
     /// How many of `lights` light `subregion`.

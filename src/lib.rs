@@ -76,9 +76,9 @@
 //!
 //! Constructors check, and say what is wrong and with which value ([`Error`]). What they return is
 //! valid: nothing after them panics, allocates or makes NaN from finite arguments; but for culling, which
-//! allocates in its first frame. A light that
-//! reflects nothing, because its flux is zero or it is lit from behind, is no error but has an empty
-//! range; it drops out before any tile is looked at ([`Stretch::new`] gives `None`).
+//! allocates in its first frame, and `TileDepths`, which panics if asked about a tile that it does not
+//! have. A light that reflects nothing, because its flux is zero or it is lit from behind, is no error but
+//! has an empty range; it drops out before any tile is looked at ([`Stretch::new`] gives `None`).
 //!
 //! # No light is lost
 //!
@@ -117,6 +117,11 @@
 //! - `cull`: many lights against many tiles, in vectors as wide as the processor has. Needs an
 //!   allocator, and Rust 1.89.
 //! - `rayon`: the same on many cores. Brings `cull` and `std`.
+//! - `serde`: materials, roulette, ξ, directions, tile grids, depth intervals and interleaving can be
+//!   saved under the names of their constructors' arguments. What is read goes through the constructors,
+//!   and what they refuse is an error with their words.
+//! - `bytemuck`: `GpuStretch` and `GpuSphere`, lights as the records that a shader reads. The lists of
+//!   `LightLists` are such buffers as they are.
 //!
 //! # Sources
 //!
@@ -149,19 +154,24 @@ mod camera;
 mod cull;
 mod direction;
 mod error;
+#[cfg(feature = "bytemuck")]
+mod gpu;
 mod half_space;
 mod interleave;
 mod math;
 mod range;
 mod stretch;
 mod tile;
+#[cfg(feature = "serde")]
+mod unchecked;
 mod vpl;
 mod wide;
 
 pub use bound::{Bound, Bounded, Ellipsoid, Sphere, Spheroid};
 pub use brdf::{
-    AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel, Ggx, GgxLobe,
-    HeightCorrelated, LambertLobe, Lobe, MaskingShadowing, NoFresnel, Schlick, Separable,
+    AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel,
+    FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, LambertLobe, Lobe, MaskingShadowing,
+    NoFresnel, Schlick, Separable,
 };
 pub use camera::Camera;
 #[cfg(feature = "cull")]
@@ -171,6 +181,8 @@ pub use cull::{
 };
 pub use direction::Direction;
 pub use error::Error;
+#[cfg(feature = "bytemuck")]
+pub use gpu::{GpuSphere, GpuStretch};
 pub use half_space::HalfSpace;
 pub use interleave::Interleave;
 pub use range::{Roulette, Xi};

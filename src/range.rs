@@ -6,6 +6,8 @@ use crate::{Error, error, math};
 ///
 /// Zero is left out, since it would let the light reach infinitely far.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::Xi"))]
 pub struct Xi(f32);
 
 impl Xi {
@@ -70,8 +72,11 @@ fn pcg3d(words: [u32; 3]) -> [u32; 3] {
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::Roulette"))]
 pub struct Roulette {
     delta: f32,
+    #[cfg_attr(feature = "serde", serde(skip))]
     delta_root: f32,
 }
 

@@ -242,9 +242,21 @@ fn nothing_is_found_where_there_is_nothing() {
         ([3, 1], 0),
         ([0, 9], 0),
         ([1, 1], 1),
+        ([2, 1], u32::MAX),
+        ([2, u32::MAX], 1),
+        ([u32::MAX, 1], 1),
     ] {
         assert!(lists.of(tile, interval).is_empty());
     }
+    assert_eq!(tiles.interval_of([2, 1], 1.5), Some(1));
+}
+
+#[test]
+#[should_panic(expected = "there is no tile (3, 0) of 3×2")]
+fn depths_of_no_tile_are_no_ones() {
+    let view = TileRectangle::new([-1.0; 2].into(), [1.0; 2].into()).unwrap();
+    let tiles = TileDepths::new([3, 2], 1, |_| view).unwrap();
+    tiles.interval_of([3, 0], 1.0);
 }
 
 /// The lights in all near intervals together, and in all far ones.

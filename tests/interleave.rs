@@ -59,3 +59,21 @@ proptest! {
         prop_assert_eq!(joined.max[0] - joined.min[0], (size.0 - 1) * w + 1);
     }
 }
+
+/// No panic, and nothing inside the image, for what is outside it.
+#[test]
+fn places_that_do_not_exist_are_outside() {
+    let interleave = Interleave::new([64, 48], 7).unwrap();
+    for subregion in [0, 48, 49, u32::MAX] {
+        for local in [[u32::MAX; 2], [1 << 30, u32::MAX / 7]] {
+            let [x, y] = interleave.join_pixel(subregion, local);
+            assert!(x >= 64 && y >= 48);
+            let max = local;
+            let joined = interleave.join_pixels(subregion, PixelRectangle { min: max, max });
+            assert!(joined.max.into_iter().all(|n| n >= 64));
+        }
+        let light = interleave.join_light(subregion, u32::MAX);
+        assert!(light >= u32::MAX / 2);
+        assert!(interleave.lights_in(subregion, u32::MAX) <= u32::MAX / 49 + 1);
+    }
+}

@@ -10,9 +10,11 @@ mod ellipsoid;
 mod ggx;
 mod lambert;
 mod principal_axes;
+mod smallest;
 mod sphere;
 mod spheroid;
 mod support;
+mod table;
 mod triaxial;
 
 pub use ellipsoid::Ellipsoid;

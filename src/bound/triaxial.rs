@@ -1,4 +1,5 @@
-//! The tighter bound: an ellipsoid with three different axes.
+//! An ellipsoid with three different axes around what the NDF alone gives, in closed form: what is left
+//! of an anisotropic lobe if its lesser roughness is not followed.
 //!
 //! The paper's spheroid takes the third semi-axis, across the plane of incidence, to be r, though
 //! the lobe is narrower there the more the light grazes the surface. This ellipsoid follows it.
@@ -48,27 +49,8 @@
 
 use glam::Vec3;
 
-use super::{Bound, Ellipsoid};
-use crate::{Fresnel, GgxLobe, MaskingShadowing, Roulette, Vpl, Xi, math};
-
-impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
-    /// The tighter bound for Φ/(δξ) = 1 and a light at the origin: an ellipsoid around the paper's
-    /// ellipse in the plane of incidence that is as narrow across it as the lobe allows, for a lobe
-    /// scaled by the joint maximum of F and G2 ([`max_reflected`](GgxLobe::max_reflected)).
-    ///
-    /// Never larger than the paper's [`Spheroid`](crate::Spheroid) but for rounding; for metals about
-    /// as large at normal incidence and a fraction of it at grazing, for dielectrics a fraction
-    /// throughout.
-    pub fn tight_bound(&self) -> Ellipsoid {
-        if self.incident_cosine() <= 0.0 {
-            return Ellipsoid::EMPTY;
-        }
-        let alpha = self.ggx().roughness();
-        let radius_squared =
-            self.max_reflected() * self.masking_over_four_cosines() * core::f32::consts::FRAC_1_PI;
-        ellipsoid_around(self, alpha, math::sqrt(radius_squared))
-    }
-}
+use super::Ellipsoid;
+use crate::{Fresnel, GgxLobe, math};
 
 /// The ellipsoid around the surface of r = `radius` and α = `alpha`, for the directions of `lobe`.
 pub(super) fn ellipsoid_around<F: Fresnel, G>(
@@ -90,15 +72,6 @@ pub(super) fn ellipsoid_around<F: Fresnel, G>(
     let tilt = 4.0 * math::UNIT_ROUNDOFF * (semi_axes.x / shortest);
     let semi_axes = semi_axes * math::round_up(1.0 + tilt, 64);
     Ellipsoid::from_parts(Vec3::ZERO, rotation.x_axis * distance, rotation, semi_axes)
-}
-
-impl<F: Fresnel, G: MaskingShadowing> Vpl<GgxLobe<F, G>> {
-    /// The [tighter bound](GgxLobe::tight_bound) of everything that accepts this light in a frame with
-    /// `roulette` and `xi`.
-    pub fn tight_bound(&self, roulette: &Roulette, xi: Xi) -> Ellipsoid {
-        let scale = roulette.scale(self.flux(), xi);
-        self.lobe().tight_bound().placed(self.position(), scale)
-    }
 }
 
 /// The semi-axes over those of the paper's spheroid.

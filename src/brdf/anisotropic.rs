@@ -24,6 +24,11 @@ use crate::{Error, error, math};
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(try_from = "crate::unchecked::AnisotropicGgx")
+)]
 pub struct AnisotropicGgx {
     roughness: [f32; 2],
 }

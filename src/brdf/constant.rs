@@ -7,6 +7,7 @@ use super::Lobe;
 /// The same radiant intensity in every direction: an engine's ordinary point light, whose intensity
 /// is its flux over 4π, culled as in [Tokuyoshi & Harada 2016].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ConstantLobe;
 
 impl ConstantLobe {

@@ -1,4 +1,4 @@
-use super::Fresnel;
+use super::{Fresnel, FresnelMajorant};
 use crate::{Error, error, math};
 
 /// Unpolarised light at a smooth interface between two transparent media
@@ -11,8 +11,12 @@ use crate::{Error, error, math};
 ///
 /// F increases with θ_h for 2 − √3 ≤ η ≤ 2 + √3, and is quasi-convex for all other η.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::Dielectric"))]
 pub struct Dielectric {
     relative_index: f32,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    majorant: FresnelMajorant,
 }
 
 impl Dielectric {
@@ -30,24 +34,36 @@ impl Dielectric {
             "in [1e-9, 1e9]",
             1e-9..=1e9,
         )
-        .map(|relative_index| Self { relative_index })
+        .map(|relative_index| Self {
+            relative_index,
+            majorant: FresnelMajorant::of(|cosine| reflectance(relative_index, cosine)),
+        })
     }
 }
 
 impl Fresnel for Dielectric {
     #[inline]
     fn reflectance(&self, half_angle_cosine: f32) -> f32 {
-        let (eta, c) = (self.relative_index, half_angle_cosine);
-        let w_squared = index_squared_less_sine_squared(eta, c);
-        if w_squared <= 0.0 {
-            return 1.0;
-        }
-        let w = math::sqrt(w_squared);
-        let s_squared = (1.0 - c) * (1.0 + c);
-        let amplitude = ((1.0 - eta) / (c + w)) * ((1.0 + eta) / (c + w));
-        let polarisation = (c * w - s_squared) / (c * w + s_squared);
-        (0.5 * amplitude * amplitude * (1.0 + polarisation * polarisation)).min(1.0)
+        reflectance(self.relative_index, half_angle_cosine)
     }
+
+    #[inline]
+    fn majorant(&self) -> FresnelMajorant {
+        self.majorant
+    }
+}
+
+#[inline]
+fn reflectance(eta: f32, c: f32) -> f32 {
+    let w_squared = index_squared_less_sine_squared(eta, c);
+    if w_squared <= 0.0 {
+        return 1.0;
+    }
+    let w = math::sqrt(w_squared);
+    let s_squared = (1.0 - c) * (1.0 + c);
+    let amplitude = ((1.0 - eta) / (c + w)) * ((1.0 + eta) / (c + w));
+    let polarisation = (c * w - s_squared) / (c * w + s_squared);
+    (0.5 * amplitude * amplitude * (1.0 + polarisation * polarisation)).min(1.0)
 }
 
 /// η² − s² for s² = 1 − c², with an error of a few roundings of the lesser of s² and c², which at the

@@ -29,10 +29,77 @@ pub trait Fresnel: Copy {
         let grazing = self.reflectance(smallest_cosine);
         math::round_up(head_on.max(grazing), 64).clamp(LEAST_REFLECTED, 1.0)
     }
+
+    /// An upper bound of F, of Schlick's form, which the [tight bound](crate::GgxLobe::tight_bound)
+    /// follows. The closer it is, the smaller that bound; it need not be below 1.
+    ///
+    /// Unless it is implemented, the largest F at all angles.
+    fn majorant(&self) -> FresnelMajorant {
+        FresnelMajorant {
+            base: self.maximum(0.0),
+            rise: 0.0,
+        }
+    }
+}
+
+/// base + rise (1 − cosθ_h)⁵, at least F for every cosθ_h in \[0, 1\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FresnelMajorant {
+    /// Its value head-on, at least 10⁻³⁰.
+    pub base: f32,
+    /// Not negative.
+    pub rise: f32,
+}
+
+impl FresnelMajorant {
+    /// The closest of some that bound `reflectance`, which must be quasi-convex, in the mean of its
+    /// quotient with it.
+    ///
+    /// Between two cosines F is at most the larger of its values there, and the majorant at least its
+    /// value at the larger cosine.
+    pub(super) fn of(reflectance: impl Fn(f32) -> f32) -> Self {
+        const STEPS: usize = 64;
+        let cosine = |i: usize| i as f32 / STEPS as f32;
+        let rises: [f32; STEPS + 1] = core::array::from_fn(|i| math::fifth_power(1.0 - cosine(i)));
+        let values: [f32; STEPS + 1] =
+            core::array::from_fn(|i| math::round_up(reflectance(cosine(i)), 64));
+        let most = values.into_iter().fold(LEAST_REFLECTED, f32::max).min(1.0);
+        let mut best = (
+            f32::INFINITY,
+            Self {
+                base: most,
+                rise: 0.0,
+            },
+        );
+        // Shapes 1 + rise (1 − c)⁵, from the steepest that is of use to none at all.
+        let mut rise = 256.0;
+        while rise > 0.01 {
+            let shape = |i: usize| 1.0 + rise * rises[i];
+            let base = (0..STEPS)
+                .map(|i| values[i].max(values[i + 1]).min(1.0) / shape(i + 1))
+                .fold(LEAST_REFLECTED, f32::max);
+            let base = math::round_up(base, 8);
+            let excess: f32 = (0..=STEPS)
+                .map(|i| base * shape(i) / values[i].max(1e-3))
+                .sum();
+            if excess < best.0 {
+                best = (
+                    excess,
+                    Self {
+                        base,
+                        rise: math::round_up(base * rise, 2),
+                    },
+                );
+            }
+            rise *= 0.7;
+        }
+        best.1
+    }
 }
 
 /// No Fresnel factor, F = 1: all light is reflected. Costs nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NoFresnel;
 
 impl Fresnel for NoFresnel {
@@ -45,10 +112,20 @@ impl Fresnel for NoFresnel {
     fn maximum(&self, _smallest_cosine: f32) -> f32 {
         1.0
     }
+
+    #[inline]
+    fn majorant(&self) -> FresnelMajorant {
+        FresnelMajorant {
+            base: 1.0,
+            rise: 0.0,
+        }
+    }
 }
 
 /// Schlick's approximation F = F0 + (1 − F0)(1 − cosθ_h)⁵ [Schlick 1994, Eq. 15].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::Schlick"))]
 pub struct Schlick {
     f0: f32,
 }
@@ -74,5 +151,13 @@ impl Fresnel for Schlick {
     #[inline]
     fn reflectance(&self, half_angle_cosine: f32) -> f32 {
         self.f0 + (1.0 - self.f0) * math::fifth_power(1.0 - half_angle_cosine)
+    }
+
+    #[inline]
+    fn majorant(&self) -> FresnelMajorant {
+        FresnelMajorant {
+            base: self.f0.max(LEAST_REFLECTED),
+            rise: math::round_up(1.0 - self.f0, 1),
+        }
     }
 }

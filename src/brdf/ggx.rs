@@ -7,6 +7,8 @@ use crate::{Error, error, math};
 /// The GGX microsurface of roughness α: how its facets are distributed and how they mask each
 /// other [Walter et al. 2007; Trowbridge & Reitz 1975].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::Ggx"))]
 pub struct Ggx {
     roughness: f32,
 }

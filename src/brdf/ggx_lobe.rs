@@ -104,25 +104,19 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         self.incident_cosine
     }
 
-    /// √(kμ² + α²), the root of G1(μ).
-    #[cfg(feature = "cull")]
-    pub(crate) fn incident_root(&self) -> f32 {
-        self.incident_root
-    }
-
-    /// F.
-    #[cfg(feature = "cull")]
-    pub(crate) fn fresnel(&self) -> F {
-        self.fresnel
-    }
-
     /// F_max, the largest Fresnel factor that any direction above the surface can have, rounded up.
     ///
     /// The half angle reaches ½ arccos μ + π/4, whose cosine is μ/√(2(1 + √(1−μ²))). The source's
     /// √((1 − √(1−μ²))/2) cancels at grazing incidence, and √(1−μ²) at normal incidence, where the sine
     /// of a cross product does not [Tokuyoshi & Harada 2017, supplemental, below Eq. 2].
     pub fn max_fresnel(&self) -> f32 {
-        let smallest_cosine = self.incident_cosine / math::sqrt(2.0 * (1.0 + self.incident_sine()));
+        self.max_fresnel_at(self.incident_sine())
+    }
+
+    /// F_max, given √(1 − μ²).
+    #[inline]
+    pub(crate) fn max_fresnel_at(&self, incident_sine: f32) -> f32 {
+        let smallest_cosine = self.incident_cosine / math::sqrt(2.0 * (1.0 + incident_sine));
         self.fresnel.maximum(smallest_cosine)
     }
 
@@ -132,6 +126,15 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
             incident_root: root,
             ..self
         }
+    }
+
+    pub(crate) fn fresnel(&self) -> &F {
+        &self.fresnel
+    }
+
+    /// √(kμ² + α²)
+    pub(crate) fn incident_root(&self) -> f32 {
+        self.incident_root
     }
 
     /// √(1 − μ²) ≥ 0.
@@ -162,16 +165,25 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
     ///
     /// At normal incidence, where any such frame will do, an arbitrary one.
     pub fn rotation(&self) -> Mat3 {
+        let [u, w] = self.mirror_and_across().0;
+        Mat3::from_cols(u, w.cross(u), w)
+    }
+
+    /// ω_u and ω_w, and √(1 − μ²).
+    #[inline]
+    pub(crate) fn mirror_and_across(&self) -> ([Vec3; 2], f32) {
         let u = *self.mirror_direction();
         // ω_u × n = n × ω_i, without the rounding of ω_u.
         let cross = math::cross(*self.normal, *self.incoming);
         let length = math::length(cross);
         let w = if length > 0.0 {
-            Vec3::from_array(cross.map(|x| (x / length) as f32))
+            // The reciprocal of the least length there is, 2⁻²⁹⁸, is finite.
+            let over = 1.0 / length;
+            Vec3::from_array(cross.map(|x| (x * over) as f32))
         } else {
             u.any_orthonormal_vector()
         };
-        Mat3::from_cols(u, w.cross(u), w)
+        ([u, w], length as f32)
     }
 }
 

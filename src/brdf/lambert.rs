@@ -7,6 +7,8 @@ use crate::{Direction, Error, error};
 
 /// Lambert's lobe: the same radiance in every direction, f = ρ/π.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::LambertLobe"))]
 pub struct LambertLobe {
     albedo: f32,
     normal: Direction,

@@ -34,6 +34,7 @@ pub trait MaskingShadowing: Copy {
 /// Facets of one height are masked and shadowed together
 /// G2 = 2μ_iμ_o/(μ_o√(kμ_i²+α²) + μ_i√(kμ_o²+α²)) [Heitz 2014, Eq. 99].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HeightCorrelated;
 
 impl MaskingShadowing for HeightCorrelated {
@@ -52,6 +53,7 @@ impl MaskingShadowing for HeightCorrelated {
 
 /// Masking and shadowing as if independent, G2 = G1(μ_i) G1(μ_o) [Walter et al. 2007, Eq. 23].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Separable;
 
 impl MaskingShadowing for Separable {

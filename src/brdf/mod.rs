@@ -16,7 +16,7 @@ pub use anisotropic_lobe::AnisotropicGgxLobe;
 pub use conductor::Conductor;
 pub use constant::ConstantLobe;
 pub use dielectric::Dielectric;
-pub use fresnel::{Fresnel, NoFresnel, Schlick};
+pub use fresnel::{Fresnel, FresnelMajorant, NoFresnel, Schlick};
 pub use ggx::Ggx;
 pub use ggx_lobe::GgxLobe;
 pub use lambert::LambertLobe;

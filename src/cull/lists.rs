@@ -29,15 +29,15 @@ impl LightLists {
     /// The lights that may touch `tile` in its `interval`-th depth interval, in the order of their batch.
     /// Empty for a tile or an interval that does not exist.
     pub fn of(&self, tile: [u32; 2], interval: u32) -> &[u32] {
-        let [x, y] = tile.map(|n| n as usize);
-        let slot = (y * self.columns + x) * self.intervals + interval as usize;
-        if x >= self.columns || interval as usize >= self.intervals {
+        let ([x, y], interval) = (tile.map(|n| n as usize), interval as usize);
+        if x >= self.columns || interval >= self.intervals {
             return &[];
         }
-        let [start, end] = self
-            .ranges
-            .get(slot)
-            .map_or([0; 2], |range| range.map(|n| n as usize));
+        // Before the place is reckoned, which could overflow.
+        if y >= self.ranges.len() / (self.columns * self.intervals) {
+            return &[];
+        }
+        let [start, end] = self.ranges[self.slot([x, y]) + interval].map(|n| n as usize);
         &self.numbers[start..end]
     }
 

@@ -95,8 +95,7 @@ impl TileDepths {
         tile: [u32; 2],
         intervals: impl IntoIterator<Item = impl Into<Option<DepthInterval>>>,
     ) {
-        let [x, y] = tile.map(|n| n as usize);
-        assert!(x < self.columns.len(), "no such column of tiles");
+        let [x, y] = self.index_of(tile);
         let index = y * self.columns.len() + x;
         let first = index * self.intervals;
         let mut around = NONE;
@@ -115,10 +114,20 @@ impl TileDepths {
     ///
     /// If there is no such tile.
     pub fn interval_of(&self, tile: [u32; 2], depth: f32) -> Option<u32> {
-        let [x, y] = tile.map(|n| n as usize);
+        let [x, y] = self.index_of(tile);
         let mut intervals = self.depths(x, y).iter();
         let holds = |[near, far]: &[f32; 2]| (*near..=*far).contains(&depth);
         intervals.position(holds).map(|interval| interval as u32)
+    }
+
+    fn index_of(&self, tile: [u32; 2]) -> [usize; 2] {
+        let [x, y] = tile.map(|n| n as usize);
+        let (columns, rows) = (self.columns.len(), self.rows.len());
+        assert!(
+            x < columns && y < rows,
+            "there is no tile ({x}, {y}) of {columns}×{rows}"
+        );
+        [x, y]
     }
 
     /// Whether no interval of any tile has surfaces.

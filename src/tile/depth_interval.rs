@@ -4,6 +4,8 @@ use crate::{Error, error, math};
 ///
 /// Those made from a depth buffer leave out sky: depths that are NaN, infinite, zero or negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::DepthInterval"))]
 pub struct DepthInterval {
     near: f32,
     far: f32,

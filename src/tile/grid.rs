@@ -2,6 +2,7 @@ use crate::Error;
 
 /// A rectangle of pixels: from `min`, included, to `max`, not included. (0, 0) is at the top left.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PixelRectangle {
     /// The pixel at the top left.
     pub min: [u32; 2],
@@ -19,6 +20,8 @@ impl PixelRectangle {
 
 /// An image cut into square tiles; those at the right and at the bottom may be smaller.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::TileGrid"))]
 pub struct TileGrid {
     image_size: [u32; 2],
     tile_size: u32,

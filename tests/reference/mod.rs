@@ -12,6 +12,7 @@ pub mod fresnel;
 pub mod given;
 pub mod lobe;
 pub mod shape;
+pub mod smallest;
 pub mod vector;
 
 pub use camera::View;
@@ -22,4 +23,5 @@ pub use lobe::{
     smith_g2,
 };
 pub use shape::Shape;
+pub use smallest::Smallest;
 pub use vector::Vector;

@@ -48,7 +48,7 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
 
     #[inline]
     fn rest(light: &Self::Light) -> F {
-        light.lobe().fresnel()
+        *light.lobe().fresnel()
     }
 
     #[inline]

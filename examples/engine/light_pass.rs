@@ -1,0 +1,128 @@
+//! The part of an engine that this crate does most of: from lights and a depth buffer to lists.
+
+use stochastic_light_culling::{
+    Bound, Bounded, Camera, CullCounters, Culler, DepthInterval, Error, GgxLobe, LightBatch,
+    LightLists, Roulette, Schlick, Spheroid, Stretch, TileDepths, TileGrid, Vpl, Xi,
+};
+
+pub type Light = Vpl<GgxLobe<Schlick>>;
+
+const SEED: u32 = 0;
+
+/// Lights that do not move, and all memory that a frame needs.
+pub struct LightPass {
+    /// Each with the shape of its range, which no frame changes.
+    lights: Vec<(Light, Spheroid)>,
+    roulette: Roulette,
+    size: [u32; 2],
+    grid: TileGrid,
+    tiles: TileDepths,
+    /// The lights by depth, nearest first.
+    order: Vec<(f32, u32)>,
+    batch: LightBatch<Stretch>,
+    culler: Culler<Stretch>,
+    lists: LightLists,
+}
+
+impl LightPass {
+    /// For views like that of `camera`, of which no more than place and direction may change.
+    pub fn new(
+        lights: Vec<Light>,
+        delta: f32,
+        camera: &Camera,
+        size: [u32; 2],
+        tile_size: u32,
+    ) -> Result<Self, Error> {
+        let grid = TileGrid::new(size, tile_size)?;
+        let rectangle = |tile| camera.tile_rectangle(size, grid.pixels(tile));
+        Ok(Self {
+            order: (0..).zip(&lights).map(|(light, _)| (0.0, light)).collect(),
+            lights: lights.into_iter().map(with_bound).collect(),
+            roulette: Roulette::new(delta)?,
+            size,
+            grid,
+            tiles: TileDepths::new(grid.size(), 2, rectangle)?,
+            batch: LightBatch::new(),
+            culler: Culler::new(),
+            lists: LightLists::new(),
+        })
+    }
+
+    /// Lists the lights of each tile for this frame.
+    pub fn cull(
+        &mut self,
+        camera: &Camera,
+        depth_buffer: &[f32],
+        frame: u32,
+    ) -> Result<CullCounters, Error> {
+        let width = self.size[0];
+        for tile in self.grid.tiles() {
+            let pixels = self.grid.pixels(tile).pixels();
+            let depths = pixels.map(|[x, y]| camera.depth(depth_buffer[(y * width + x) as usize]));
+            self.tiles.set(tile, DepthInterval::modified_half_z(depths));
+        }
+
+        // From near to far, which makes culling faster and changes nothing else.
+        for (depth, number) in &mut self.order {
+            let (light, _) = &self.lights[*number as usize];
+            *depth = camera.to_camera_space(light.position()).z;
+        }
+        self.order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+
+        self.batch.clear();
+        for (_, number) in &self.order {
+            let (light, unit_bound) = &self.lights[*number as usize];
+            let scale = self.roulette.scale(light.flux(), xi(*number, frame));
+            let bound = unit_bound.placed(light.position(), scale);
+            if let Some(stretch) = Stretch::new(&bound.into(), camera) {
+                self.batch.push(*number, &stretch);
+            }
+        }
+        self.culler.cull(&self.batch, &self.tiles, &mut self.lists)
+    }
+
+    /// The estimate of the light that arrives at what `pixel` shows, from the lights of its list: what a
+    /// shader does next.
+    pub fn radiance(
+        &self,
+        camera: &Camera,
+        depth_buffer: &[f32],
+        pixel: [u32; 2],
+        frame: u32,
+    ) -> f32 {
+        let depth = camera.depth(depth_buffer[(pixel[1] * self.size[0] + pixel[0]) as usize]);
+        let tile = self.grid.tile_of(pixel);
+        let Some(interval) = self.tiles.interval_of(tile, depth) else {
+            return 0.0; // sky
+        };
+        let point = camera.to_world_space(camera.point_in_pixel(self.size, pixel, depth));
+        let from = |number: &u32| {
+            let (light, _) = &self.lights[*number as usize];
+            let way = point - light.position();
+            let intensity = light.radiant_intensity(way.normalize());
+            let distance_squared = way.length_squared();
+            self.roulette
+                .estimate(intensity, distance_squared, xi(*number, frame))
+        };
+        self.lists.of(tile, interval).iter().map(from).sum()
+    }
+
+    /// Lights that reach anything at all in this frame.
+    pub fn lights_in_reach(&self) -> usize {
+        self.batch.len()
+    }
+
+    /// How many lights each depth interval of each tile has.
+    pub fn list_lengths(&self) -> impl Iterator<Item = u32> + Clone + '_ {
+        self.lists.ranges().iter().map(|[start, end]| end - start)
+    }
+}
+
+fn with_bound(light: Light) -> (Light, Spheroid) {
+    (light, light.lobe().unit_bound())
+}
+
+/// Each light's, new in each frame, for culling and for shading.
+fn xi(light: u32, frame: u32) -> Xi {
+    Xi::hashed(light, frame, SEED)
+}

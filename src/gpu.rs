@@ -1,0 +1,81 @@
+//! Lights as a shader reads them.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::{CameraSphere, Stretch};
+
+/// A [`Stretch`] and the light that it is of, for a storage buffer: 48 bytes, with the offsets of this
+/// structure in WGSL and of its like in GLSL's std430.
+///
+/// ```wgsl
+/// struct Stretch {
+///     x_and_y_axes: vec4<f32>, // offset  0: M₁₁, M₂₁, M₁₂, M₂₂
+///     z_axis: vec3<f32>,       // offset 16: M₁₃, M₂₃, m
+///     light: u32,              // offset 28
+///     center: vec3<f32>,       // offset 32: Mc′
+///     unused: u32,             // offset 44
+/// }
+/// ```
+///
+/// What is left out of M is zero. No floats but those of the stretch: a shader that does the
+/// [tile test](crate::TileTest) in the same operations, without contracting them, gives the same answer.
+///
+/// ```
+/// use stochastic_light_culling::{Camera, Ellipsoid, GpuStretch, Stretch, glam::{Mat3, Vec3}};
+///
+/// let camera = Camera::look_at(Vec3::ZERO, -Vec3::Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
+/// let ellipsoid = Ellipsoid::new(Vec3::new(0.0, 0.0, -8.0), Mat3::IDENTITY, Vec3::ONE)?;
+/// let stretch = Stretch::new(&ellipsoid, &camera).expect("not empty");
+/// let records = [GpuStretch::new(&stretch, 7)];
+/// let bytes: &[u8] = bytemuck::cast_slice(&records);
+/// assert_eq!(bytes[28..32], 7_u32.to_ne_bytes());
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuStretch {
+    /// M₁₁, M₂₁, M₁₂, M₂₂: the images of the x and y axes of camera space, whose third components are 0.
+    pub x_and_y_axes: [f32; 4],
+    /// M₁₃, M₂₃, m: the image of the depth axis.
+    pub z_axis: [f32; 3],
+    /// The light, as the engine numbers them.
+    pub light: u32,
+    /// Mc′, the centre of the unit sphere.
+    pub center: [f32; 3],
+    /// Zero, and free for other uses.
+    pub unused: u32,
+}
+
+impl GpuStretch {
+    /// The record of `stretch`, which is of `light`.
+    pub fn new(stretch: &Stretch, light: u32) -> Self {
+        let m = stretch.matrix();
+        Self {
+            x_and_y_axes: [m.x_axis.x, m.x_axis.y, m.y_axis.x, m.y_axis.y],
+            z_axis: m.z_axis.to_array(),
+            light,
+            center: stretch.center().to_array(),
+            unused: 0,
+        }
+    }
+}
+
+/// A [`CameraSphere`] for a storage or uniform buffer: 16 bytes, a `vec4<f32>`. Which light it is of, its
+/// place in the buffer says.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuSphere {
+    /// The centre in camera space; offset 0.
+    pub center: [f32; 3],
+    /// The square of the radius, infinite of a sphere that is everywhere; offset 12.
+    pub radius_squared: f32,
+}
+
+impl From<&CameraSphere> for GpuSphere {
+    fn from(sphere: &CameraSphere) -> Self {
+        Self {
+            center: sphere.center().to_array(),
+            radius_squared: sphere.radius_squared(),
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! The example `engine`: its frames allocate nothing, and it sees the same in views of either handedness.
+#![cfg(feature = "cull")]
+
+#[path = "../examples/engine/light_pass.rs"]
+mod light_pass;
+#[path = "../examples/engine/world.rs"]
+mod world;
+
+use std::process::{Command, Output};
+
+use light_pass::LightPass;
+use world::{Handedness, World, lights};
+
+const SIZE: [u32; 2] = [256, 144];
+
+fn engine(handedness: Handedness) -> (World, LightPass) {
+    let world = World::new(SIZE, handedness);
+    let lights = lights(2000, 0.1).unwrap();
+    let camera = world.camera(0).unwrap();
+    let pass = LightPass::new(lights, 0.01, &camera, SIZE, 16).unwrap();
+    (world, pass)
+}
+
+#[test]
+fn frames_after_the_first_allocate_nothing() {
+    for handedness in [Handedness::Right, Handedness::Left] {
+        let (mut world, mut pass) = engine(handedness);
+        let mut draw = |frame| {
+            let camera = world.camera(frame).unwrap();
+            let depths = world.draw_depths(&camera);
+            let counters = pass.cull(&camera, depths, frame).unwrap();
+            assert!(counters.pairs > 0 && pass.lights_in_reach() > 0);
+        };
+        let first = allocation_counter::measure(|| draw(0));
+        assert!(first.count_total > 0, "nothing is counted");
+        for frame in 1..40 {
+            let later = allocation_counter::measure(|| draw(frame));
+            assert_eq!(later.count_total, 0, "frame {frame}, {handedness:?}");
+        }
+    }
+}
+
+/// The same world, to the left-handed eye a mirror image: each list at the other end of its row. Rounding
+/// may add a light here or there.
+#[test]
+fn views_of_either_handedness_see_the_same_lights() {
+    let lengths = [Handedness::Right, Handedness::Left].map(|handedness| {
+        let (mut world, mut pass) = engine(handedness);
+        let camera = world.camera(0).unwrap();
+        pass.cull(&camera, world.draw_depths(&camera), 0).unwrap();
+        pass.list_lengths().collect::<Vec<_>>()
+    });
+    let in_a_row = 2 * (SIZE[0] as usize / 16);
+    let [right, left] = lengths.each_ref().map(|lengths| lengths.chunks(in_a_row));
+    for (right, left) in right.zip(left) {
+        let mirrored = left.chunks(2).rev().flatten();
+        for (right, left) in right.iter().zip(mirrored) {
+            assert!(right.abs_diff(*left) <= 1 + right / 20, "{right}, {left}");
+        }
+    }
+}
+
+/// A list holds what its pixels need: the mean over frames is the light of all lights.
+#[test]
+fn the_mean_over_frames_is_what_all_lights_give() {
+    const FRAMES: u32 = 400;
+    let (mut world, mut pass) = engine(Handedness::Right);
+    let camera = world.camera(0).unwrap();
+    let depths = world.draw_depths(&camera).to_vec();
+    let pixel = [128, 54];
+    let mut total = 0.0;
+    for frame in 0..FRAMES {
+        pass.cull(&camera, &depths, frame).unwrap();
+        total += f64::from(pass.radiance(&camera, &depths, pixel, frame));
+    }
+    let point = camera.point_in_pixel(
+        SIZE,
+        pixel,
+        camera.depth(depths[(pixel[1] * SIZE[0] + pixel[0]) as usize]),
+    );
+    let point = camera.to_world_space(point);
+    let radiance = |light: &light_pass::Light| {
+        let way = point - light.position();
+        f64::from(light.radiant_intensity(way.normalize()) / way.length_squared())
+    };
+    let lights = lights(2000, 0.1).unwrap();
+    let exact: f64 = lights.iter().map(radiance).sum();
+    let mean = total / f64::from(FRAMES);
+    // δ is the largest share of one light: its variance is at most δL, so the standard deviation of the
+    // mean is at most √(δ·exact/FRAMES); five of them are crossed once in two million seeds, and this seed
+    // is fixed.
+    let deviation = (0.01 * exact / f64::from(FRAMES)).sqrt();
+    assert!(exact > 0.1, "the wall is dark");
+    assert!((mean - exact).abs() < 5.0 * deviation, "{mean}, {exact}");
+}
+
+/// Runs the example that `cargo test` has built beside this test's own executable. With `--test`
+/// cargo leaves it out, and it must be built before: `cargo build --profile test --example engine`.
+fn run(arguments: &[&str]) -> Output {
+    let test = std::env::current_exe().expect("a test knows where it is");
+    let profile = test.ancestors().nth(2).expect("tests lie in deps/");
+    let name = format!("engine{}", std::env::consts::EXE_SUFFIX);
+    Command::new(profile.join("examples").join(name))
+        .args(arguments)
+        .output()
+        .expect("first run `cargo build --profile test --example engine`, or all of `cargo test`")
+}
+
+#[test]
+fn prints_a_line_for_each_frame() {
+    for arguments in [
+        &["--frames=3"][..],
+        &["--frames=3", "--left-handed"],
+        &["--frames=3", "--lights=0"],
+    ] {
+        let output = run(arguments);
+        assert!(output.status.success() && output.stderr.is_empty());
+        let table = String::from_utf8(output.stdout).expect("tables are UTF-8");
+        assert_eq!(table.lines().count(), 4, "{table}");
+    }
+}
+
+#[test]
+fn refuses_what_no_engine_has() {
+    for (argument, reason) in [
+        ("--frames=0", "0 is not in"),
+        ("--lights=-1", "-1"),
+        ("--alpha=0", "roughness α is 0"),
+        ("--delta=NaN", "δ is NaN"),
+        ("--right-handed", "--right-handed"),
+    ] {
+        let output = run(&[argument]);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{argument}: {error}");
+        assert_eq!(error.lines().count(), 1, "{argument}: {error}");
+        assert!(error.contains(reason), "{argument}: {error}");
+        assert!(output.stdout.is_empty(), "{argument}");
+    }
+}

@@ -1,0 +1,159 @@
+//! What is saved is what is read, and what a constructor refuses is refused when read.
+#![cfg(feature = "serde")]
+
+mod generators;
+mod reference;
+
+use std::fmt::Debug;
+
+use generators::{cases, log_uniform, up_to_one};
+use proptest::prelude::*;
+use serde_json::{Value, json};
+use stochastic_light_culling::{
+    AnisotropicGgx, Conductor, ConstantLobe, DepthInterval, Dielectric, Direction, Error, Ggx,
+    HeightCorrelated, Interleave, LambertLobe, NoFresnel, PixelRectangle, Roulette, Schlick,
+    Separable, TileGrid, Xi, glam::Vec3,
+};
+
+/// What can be saved and read.
+trait Saved: serde::Serialize + serde::de::DeserializeOwned + PartialEq + Debug {}
+
+impl<T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + Debug> Saved for T {}
+
+fn comes_back<T: Saved>(value: &T) -> Result<(), TestCaseError> {
+    let text = serde_json::to_string(value).unwrap();
+    let read: T = serde_json::from_str(&text).unwrap();
+    prop_assert_eq!(&read, value, "{}", text);
+    Ok(())
+}
+
+#[test]
+fn each_is_saved_under_the_names_of_its_constructor() -> Result<(), Error> {
+    fn assert_saved<T: Saved>(value: &T, saved: Value) {
+        assert_eq!(serde_json::to_value(value).unwrap(), saved);
+        let read: T = serde_json::from_value(saved).unwrap();
+        assert_eq!(read, *value);
+    }
+    assert_saved(&Ggx::new(0.25)?, json!({ "roughness": 0.25 }));
+    let brushed = AnisotropicGgx::new(0.5, 0.125)?;
+    assert_saved(&brushed, json!({ "roughness": [0.5, 0.125] }));
+    assert_saved(&Schlick::new(0.75)?, json!({ "f0": 0.75 }));
+    let glass = Dielectric::new(1.5)?;
+    assert_saved(&glass, json!({ "relative_index": 1.5 }));
+    let gold = Conductor::new(0.125, 3.5)?;
+    assert_saved(&gold, json!({ "index": 0.125, "extinction": 3.5 }));
+    let paper = LambertLobe::new(0.5, Direction::Y)?;
+    let saved_paper = json!({ "albedo": 0.5, "normal": [0.0, 1.0, 0.0] });
+    assert_saved(&paper, saved_paper);
+    assert_saved(&NoFresnel, Value::Null);
+    assert_saved(&HeightCorrelated, Value::Null);
+    assert_saved(&Separable, Value::Null);
+    assert_saved(&ConstantLobe, Value::Null);
+    assert_saved(&Roulette::new(0.0625)?, json!({ "delta": 0.0625 }));
+    assert_saved(&Xi::new(0.5)?, json!(0.5));
+    assert_saved(&Direction::X, json!([1.0, 0.0, 0.0]));
+    let depths = DepthInterval::new(0.5, 8.0)?;
+    assert_saved(&depths, json!({ "near": 0.5, "far": 8.0 }));
+    let grid = TileGrid::new([640, 480], 16)?;
+    let saved_grid = json!({ "image_size": [640, 480], "tile_size": 16 });
+    assert_saved(&grid, saved_grid);
+    let interleave = Interleave::new([640, 480], 8)?;
+    let saved_interleave = json!({ "image_size": [640, 480], "width": 8 });
+    assert_saved(&interleave, saved_interleave);
+    let (min, max) = ([1, 2], [3, 4]);
+    let pixels = PixelRectangle { min, max };
+    assert_saved(&pixels, json!({ "min": min, "max": max }));
+    Ok(())
+}
+
+#[test]
+fn what_no_constructor_accepts_is_not_read() {
+    #[track_caller]
+    fn assert_refused<T: Saved>(saved: Value, reason: &str) {
+        let message = serde_json::from_value::<T>(saved).unwrap_err().to_string();
+        assert!(message.contains(reason), "{message}");
+    }
+    assert_refused::<Ggx>(json!({ "roughness": 2.0 }), "roughness α is 2, but must be");
+    assert_refused::<Ggx>(json!({ "roughness": 1e300 }), "roughness α is inf");
+    assert_refused::<Ggx>(json!({}), "missing field `roughness`");
+    // What JSON has in the place of NaN.
+    assert_refused::<Ggx>(json!({ "roughness": null }), "invalid type: null");
+    let rough_across = json!({ "roughness": [0.5, -1.0] });
+    assert_refused::<AnisotropicGgx>(rough_across, "roughness α_y is -1");
+    assert_refused::<Schlick>(json!({ "f0": 1.5 }), "reflectance F0 is 1.5");
+    assert_refused::<Dielectric>(json!({ "relative_index": 0.0 }), "refractive index η is 0");
+    let gain = json!({ "index": 1.5, "extinction": -1.0 });
+    assert_refused::<Conductor>(gain, "extinction coefficient κ is -1");
+    let bright = json!({ "albedo": 1.5, "normal": [0.0, 1.0, 0.0] });
+    assert_refused::<LambertLobe>(bright, "albedo is 1.5");
+    let nowhere = json!({ "albedo": 0.5, "normal": [0.0, 0.0, 0.0] });
+    assert_refused::<LambertLobe>(nowhere, "direction is [0, 0, 0]");
+    assert_refused::<Roulette>(json!({ "delta": 0.0 }), "variance parameter δ is 0");
+    assert_refused::<Xi>(json!(0.0), "random number ξ is 0");
+    assert_refused::<Direction>(json!([0.0, 0.0, 0.0]), "direction is [0, 0, 0]");
+    assert_refused::<Direction>(json!([0.0, 1e300, 0.0]), "direction is [0, inf, 0]");
+    let backward = json!({ "near": 2.0, "far": 1.0 });
+    assert_refused::<DepthInterval>(backward, "far depth is 1");
+    let no_tiles = json!({ "image_size": [640, 480], "tile_size": 0 });
+    assert_refused::<TileGrid>(no_tiles, "tile size is 0×0");
+    let no_image = json!({ "image_size": [0, 480], "width": 1 });
+    assert_refused::<Interleave>(no_image, "image size is 0×480");
+}
+
+/// A number that JSON cannot write, but other formats can.
+#[test]
+fn not_a_number_is_not_read() {
+    use serde::Deserialize;
+    use serde::de::value::{Error, MapDeserializer};
+
+    let map = MapDeserializer::<_, Error>::new([("roughness", f32::NAN)].into_iter());
+    let message = Ggx::deserialize(map).unwrap_err().to_string();
+    assert!(message.contains("roughness α is NaN"), "{message}");
+}
+
+/// Directions that others have written are of unit length once they are read.
+#[test]
+fn directions_of_any_length_are_read() {
+    let read: Direction = serde_json::from_value(json!([0.0, 3.0, 4.0])).unwrap();
+    assert_eq!(read, Direction::new(Vec3::new(0.0, 3.0, 4.0)).unwrap());
+}
+
+proptest! {
+    #![proptest_config(cases(2000))]
+
+    #[test]
+    fn materials_come_back(
+        roughness in [up_to_one(1e-6), up_to_one(1e-6)],
+        f0 in 0.0..=1.0_f32,
+        index in log_uniform(1.1e-9, 0.9e9),
+        extinction in log_uniform(1.1e-12, 0.9e9),
+    ) {
+        comes_back(&Ggx::new(roughness[0]).unwrap())?;
+        comes_back(&AnisotropicGgx::new(roughness[0], roughness[1]).unwrap())?;
+        comes_back(&Schlick::new(f0).unwrap())?;
+        comes_back(&Dielectric::new(index as f32).unwrap())?;
+        comes_back(&Conductor::new(index as f32, extinction as f32).unwrap())?;
+    }
+
+    #[test]
+    fn settings_come_back(
+        delta in log_uniform(1e-45, 3e38),
+        light in any::<u32>(),
+        width in 1..64_u32,
+        size in [64..5000_u32, 64..5000_u32],
+    ) {
+        comes_back(&Roulette::new(delta as f32).unwrap())?;
+        comes_back(&Xi::hashed(light, 0, 0))?;
+        comes_back(&Interleave::new(size, width).unwrap())?;
+        comes_back(&TileGrid::new(size, width).unwrap())?;
+    }
+
+    /// To the last bit, although a unit vector that is made one again can change.
+    #[test]
+    fn directions_come_back(vector in generators::unit_vector(), scale in log_uniform(1e-30, 1e30)) {
+        let [x, y, z] = vector.0.map(|x| (scale * x) as f32);
+        let direction = Direction::new(Vec3::new(x, y, z)).unwrap();
+        comes_back(&direction)?;
+        comes_back(&-direction)?;
+    }
+}
