@@ -2,11 +2,14 @@
 //!
 //! The numbers of sixteen lights are laid side by side, and vectors go over them as the scalar functions
 //! go over one light, in the same operations and in the same order, without fused ones: a shape has the
-//! bits that they give it. The steps are those of the corridor: [`source`] makes bounds of lights,
-//! `place` puts them in place, and `view` before the camera.
+//! bits that they give it. The steps are those of the corridor: `spheroids`, `spheres` and
+//! `ellipsoids` make bounds of lights, `place` puts them in place, and `view` before the camera.
 
+mod ellipsoids;
 mod place;
 mod source;
+mod spheres;
+mod spheroids;
 mod vector;
 mod view;
 
@@ -15,7 +18,8 @@ use core::ops::Range;
 use fearless_simd::{Level, Simd, dispatch};
 use glam::Vec3;
 
-use self::source::{Frame, Lights, Source, Tight};
+use self::ellipsoids::Tight;
+use self::source::{Frame, Lights, Source};
 use self::view::View;
 use super::LightBatch;
 use super::culler::{at_most, widest};
