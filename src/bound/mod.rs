@@ -6,9 +6,11 @@
 
 mod anisotropic;
 mod constant;
+mod cosine_power;
 mod ellipsoid;
 mod ggx;
 mod lambert;
+mod phong;
 mod principal_axes;
 mod sphere;
 mod spheroid;

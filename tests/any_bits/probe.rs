@@ -2,8 +2,8 @@
 
 use stochastic_light_culling::{
     AnisotropicGgxLobe, Bound, Bounded, Camera, CameraSphere, DepthInterval, Direction, Ellipsoid,
-    Fresnel, GgxLobe, Lobe, MaskingShadowing, PixelRectangle, Roulette, Sphere, Spheroid, Stretch,
-    TileRectangle, TileTest, Vpl, Xi,
+    Fresnel, GgxLobe, Lobe, MaskingShadowing, PixelRectangle, Roulette, Sphere, Spheroid,
+    Stretch, TileRectangle, TileTest, Vpl, Xi,
     glam::{Mat3, Vec2, Vec3},
 };
 
