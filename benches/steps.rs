@@ -13,7 +13,7 @@ use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterio
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bound, Bounded, Camera, CameraSphere, Conductor,
     DepthInterval, Dielectric, Direction, Ellipsoid, Fresnel, Ggx, GgxLobe, Interleave,
-    LambertLobe, Lobe, NoFresnel, PhongLobe, PixelRectangle, Roulette, Schlick, Stretch,
+    LambertLobe, Lobe, NoFresnel, PhongLobe, PixelRectangle, Proxy, Roulette, Schlick, Stretch,
     TileGrid, TileTest, Vpl, Xi,
     glam::{Mat3, Vec3},
     stretch_matrix, stretch_rotation,
@@ -206,6 +206,20 @@ fn bound(criterion: &mut Criterion) {
     ] {
         per_item(&mut group, name, &phong_lights(exponents), |light| {
             light.lobe().unit_bound()
+        });
+    }
+    let tight: Vec<_> = diffuse_lights()
+        .iter()
+        .map(|light| light.lobe().tight_bound())
+        .collect();
+    for (name, proxy) in [
+        ("proxy of 20 triangles", Proxy::Icosahedron),
+        ("proxy of 80 triangles", Proxy::Icosphere),
+    ] {
+        per_item(&mut group, name, &tight, |ellipsoid| {
+            proxy
+                .vertices(ellipsoid)
+                .fold(Vec3::ZERO, |sum, vertex| sum + vertex)
         });
     }
     per_item(

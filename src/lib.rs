@@ -13,7 +13,7 @@
 //! | lobe | surface, incoming direction | what it reflects | [`GgxLobe`], [`AnisotropicGgxLobe`], [`LambertLobe`], [`PhongLobe`], [`ConstantLobe`] |
 //! | light | lobe, position, flux | radiant intensity | [`Vpl`] |
 //! | range | intensity, ξ | probability, range, estimate | [`Roulette`], [`Xi`] |
-//! | bound | lobe, range | shape around all it may light | [`Spheroid`], [`Sphere`], [`Ellipsoid`] |
+//! | bound | lobe, range | shape around all it may light | [`Spheroid`], [`Sphere`], [`Ellipsoid`]; [`Proxy`] to rasterise it |
 //! | stretch | bound, camera | unit sphere | [`Stretch`], [`CameraSphere`], [`HalfSpace`] |
 //! | tile | pixels, depths | touched or not | [`TileGrid`], [`DepthInterval`], [`TileTest`] |
 //! | cull | many lights, many tiles | a list of lights for each tile | `LightBatch`, `TileDepths`, `Culler`, `LightLists` (feature `cull`) |
@@ -160,7 +160,7 @@ mod tile;
 mod vpl;
 mod wide;
 
-pub use bound::{Bound, Bounded, Ellipsoid, Sphere, Spheroid};
+pub use bound::{Bound, Bounded, Ellipsoid, Proxy, Sphere, Spheroid};
 pub use brdf::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel, Ggx, GgxLobe,
     HeightCorrelated, LambertLobe, Lobe, MaskingShadowing, NoFresnel, PhongLobe, Schlick,

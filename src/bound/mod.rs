@@ -12,12 +12,14 @@ mod ggx;
 mod lambert;
 mod phong;
 mod principal_axes;
+mod proxy;
 mod sphere;
 mod spheroid;
 mod support;
 mod triaxial;
 
 pub use ellipsoid::Ellipsoid;
+pub use proxy::Proxy;
 pub use sphere::Sphere;
 pub use spheroid::Spheroid;
 
