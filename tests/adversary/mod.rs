@@ -23,6 +23,11 @@ pub enum Bound {
         tight: Ellipsoid,
     },
     Anisotropic(Ellipsoid),
+    Phong(Ellipsoid),
+    Lambert {
+        sphere: Sphere,
+        tight: Ellipsoid,
+    },
     Sphere(Sphere),
 }
 
@@ -49,6 +54,14 @@ impl Bound {
         let found = match *self {
             Self::Sphere(bound) => vec![("sphere", sphere(bound))],
             Self::Anisotropic(bound) => vec![("anisotropic ellipsoid", ellipsoid(bound))],
+            Self::Phong(bound) => vec![("ellipsoid of Phong's lobe", ellipsoid(bound))],
+            Self::Lambert {
+                sphere: bound,
+                tight,
+            } => vec![
+                ("sphere", sphere(bound)),
+                ("ellipsoid of Lambert's lobe", ellipsoid(tight)),
+            ],
             Self::Ggx { spheroid, tight } => vec![
                 ("spheroid", ellipsoid(spheroid.into())),
                 ("tight ellipsoid", ellipsoid(tight)),
