@@ -18,6 +18,7 @@ use stochastic_light_culling::{
 /// What the crate says of a GGX light.
 struct GgxBounds {
     spheroid: Spheroid,
+    triaxial: Ellipsoid,
     tight: Ellipsoid,
     max_fresnel: f64,
 }
@@ -69,17 +70,9 @@ impl Case {
         F: stochastic_light_culling::Fresnel,
     {
         let lobe = GgxLobe::new(ggx, fresnel, self.lit.normal, self.lit.incoming);
-        let (spheroid, tight) = match masking {
-            Masking::HeightCorrelated => (self.bound(lobe), self.tight_bound(lobe)),
-            Masking::Separable => {
-                let lobe = lobe.separable();
-                (self.bound(lobe), self.tight_bound(lobe))
-            }
-        };
-        GgxBounds {
-            spheroid,
-            tight,
-            max_fresnel: lobe.max_fresnel().into(),
+        match masking {
+            Masking::HeightCorrelated => self.bounds_of_lobe(lobe),
+            Masking::Separable => self.bounds_of_lobe(lobe.separable()),
         }
     }
 
@@ -101,14 +94,20 @@ impl Case {
         }
     }
 
-    fn tight_bound<F, G>(&self, lobe: GgxLobe<F, G>) -> Ellipsoid
+    fn bounds_of_lobe<F, G>(&self, lobe: GgxLobe<F, G>) -> GgxBounds
     where
         F: stochastic_light_culling::Fresnel,
         G: MaskingShadowing,
     {
         let (flux, delta, xi) = self.roulette;
         let light = Vpl::new(self.position, flux, lobe).unwrap();
-        light.tight_bound(&Roulette::new(delta).unwrap(), Xi::new(xi).unwrap())
+        let (roulette, xi) = (Roulette::new(delta).unwrap(), Xi::new(xi).unwrap());
+        GgxBounds {
+            spheroid: light.bound(&roulette, xi),
+            triaxial: light.triaxial_bound(&roulette, xi),
+            tight: light.tight_bound(&roulette, xi),
+            max_fresnel: lobe.max_fresnel().into(),
+        }
     }
 
     /// All bounds that the crate has for this light.
@@ -120,7 +119,10 @@ impl Case {
                 masking,
             } => {
                 let GgxBounds {
-                    spheroid, tight, ..
+                    spheroid,
+                    triaxial,
+                    tight,
+                    ..
                 } = self.ggx_bounds(roughness, fresnel, masking);
                 vec![
                     ("spheroid", spheroid.into()),
@@ -128,6 +130,7 @@ impl Case {
                         "ellipsoid of the spheroid",
                         Ellipsoid::from(spheroid).into(),
                     ),
+                    ("triaxial ellipsoid", triaxial.into()),
                     ("tight ellipsoid", tight.into()),
                     ("sphere at the light", spheroid.sphere_at_focus().into()),
                     (

@@ -48,7 +48,7 @@ fn tightness(reflectances: &[f32]) -> [f64; 3] {
 fn volume_is_near_the_least_for_metals() {
     let [mean, most, over_paper] = tightness(&tightness::METALS);
     println!("mean {mean}, most {most}, over the paper's at most {over_paper}");
-    assert!(mean <= 1.1 && most <= 1.25, "mean {mean}, most {most}");
+    assert!(mean <= 1.2 && most <= 1.35, "mean {mean}, most {most}");
     assert!(over_paper <= 1.001, "{over_paper}");
 }
 
@@ -56,7 +56,7 @@ fn volume_is_near_the_least_for_metals() {
 fn volume_is_near_the_least_for_dielectrics() {
     let [mean, most, over_paper] = tightness(&tightness::DIELECTRICS);
     println!("mean {mean}, most {most}, over the paper's at most {over_paper}");
-    assert!(mean <= 1.2 && most <= 1.5, "mean {mean}, most {most}");
+    assert!(mean <= 1.3 && most <= 1.6, "mean {mean}, most {most}");
     assert!(over_paper <= 1.001, "{over_paper}");
 }
 
@@ -229,8 +229,8 @@ proptest! {
         let fresnel = GivenFresnel::try_from(fresnel).unwrap();
         let plain = GgxLobe::new(Ggx::new(roughness).unwrap(), fresnel, lit.normal, lit.incoming);
         let grained = grained([roughness; 2], fresnel, &lit, tangent);
-        prop_assert_eq!(grained.unit_bound(), plain.tight_bound());
-        prop_assert_eq!(grained.separable().unit_bound(), plain.separable().tight_bound());
+        prop_assert_eq!(grained.unit_bound(), plain.triaxial_bound());
+        prop_assert_eq!(grained.separable().unit_bound(), plain.separable().triaxial_bound());
     }
 
     #[test]
@@ -243,8 +243,7 @@ proptest! {
         let fresnel = GivenFresnel::try_from(fresnel).unwrap();
         let lobe = grained(roughness, fresnel, &lit, tangent);
         let reflected = f64::from(lobe.max_reflected());
-        // Of equal roughness the bound is another, which follows more than the NDF.
-        prop_assume!(reflected > 1e-15 && roughness[0] != roughness[1]);
+        prop_assume!(reflected > 1e-15);
         let bound = lobe.unit_bound();
 
         // The surface l = r′/(ω_hᵀP⁻²ω_h), everywhere.

@@ -8,7 +8,7 @@ use crate::certificate::{Angles, Interval, Lobe, level, masked, place, table};
 use crate::reference::Smallest;
 
 /// What the knots are enlarged by after all samples are inside.
-const MARGIN: f64 = 1.015;
+const MARGIN: f64 = 1.04;
 const SIZE: [usize; 3] = [table::ROUGHNESSES, table::INCIDENCES, table::REFLECTANCES];
 
 type Knot = [f64; table::NUMBERS];

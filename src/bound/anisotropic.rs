@@ -66,11 +66,11 @@ impl<F: Fresnel, G: MaskingShadowing> Bounded for AnisotropicGgxLobe<F, G> {
     ///
     /// It follows the grain: along each of its axes it is about as narrow as the lobe. Never larger than
     /// the paper's [`Spheroid`](crate::Spheroid) for the greater of α_x and α_y around this lobe, but for
-    /// rounding, and [`GgxLobe::tight_bound`](crate::GgxLobe::tight_bound) for α_x = α_y.
+    /// rounding, and [`GgxLobe::triaxial_bound`](crate::GgxLobe::triaxial_bound) for α_x = α_y.
     fn unit_bound(&self) -> Ellipsoid {
         let isotropic = self.at_any_azimuth();
         if self.ggx().is_isotropic() {
-            return isotropic.tight_bound();
+            return isotropic.triaxial_bound();
         }
         if self.incident_cosine() <= 0.0 {
             return Ellipsoid::EMPTY;

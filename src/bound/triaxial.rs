@@ -1,5 +1,5 @@
-//! An ellipsoid with three different axes around what the NDF alone gives, in closed form: what is left
-//! of an anisotropic lobe if its lesser roughness is not followed.
+//! The triaxial bound: an ellipsoid with three different axes around what the NDF alone gives, in closed
+//! form.
 //!
 //! The paper's spheroid takes the third semi-axis, across the plane of incidence, to be r, though
 //! the lobe is narrower there the more the light grazes the surface. This ellipsoid follows it.
@@ -49,8 +49,35 @@
 
 use glam::Vec3;
 
-use super::Ellipsoid;
-use crate::{Fresnel, GgxLobe, math};
+use super::{Bound, Ellipsoid};
+use crate::{Fresnel, GgxLobe, MaskingShadowing, Roulette, Vpl, Xi, math};
+
+impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
+    /// The triaxial bound for Φ/(δξ) = 1 and a light at the origin: an ellipsoid around the paper's
+    /// ellipse in the plane of incidence that is as narrow across it as the lobe allows, for a lobe
+    /// scaled by the joint maximum of F and G2 ([`max_reflected`](GgxLobe::max_reflected)).
+    ///
+    /// In closed form and proved, where [`tight_bound`](GgxLobe::tight_bound) is smaller, and from a table.
+    /// Never larger than the paper's [`Spheroid`](crate::Spheroid) but for rounding; for metals about as
+    /// large at normal incidence and a fraction of it at grazing, for dielectrics a fraction throughout.
+    pub fn triaxial_bound(&self) -> Ellipsoid {
+        if self.incident_cosine() <= 0.0 {
+            return Ellipsoid::EMPTY;
+        }
+        let radius_squared =
+            self.max_reflected() * self.masking_over_four_cosines() * core::f32::consts::FRAC_1_PI;
+        ellipsoid_around(self, self.ggx().roughness(), math::sqrt(radius_squared))
+    }
+}
+
+impl<F: Fresnel, G: MaskingShadowing> Vpl<GgxLobe<F, G>> {
+    /// The [triaxial bound](GgxLobe::triaxial_bound) of everything that accepts this light in a frame with
+    /// `roulette` and `xi`.
+    pub fn triaxial_bound(&self, roulette: &Roulette, xi: Xi) -> Ellipsoid {
+        let scale = roulette.scale(self.flux(), xi);
+        self.lobe().triaxial_bound().placed(self.position(), scale)
+    }
+}
 
 /// The ellipsoid around the surface of r = `radius` and α = `alpha`, for the directions of `lobe`.
 pub(super) fn ellipsoid_around<F: Fresnel, G>(

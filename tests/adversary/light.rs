@@ -259,6 +259,7 @@ impl Light {
         let light = Vpl::new(self.position, self.flux, lobe).expect("in the domain");
         Bound::Ggx {
             spheroid: light.bound(&roulette, xi),
+            triaxial: light.triaxial_bound(&roulette, xi),
             tight: light.tight_bound(&roulette, xi),
         }
     }

@@ -20,6 +20,7 @@ use crate::reference::Vector;
 pub enum Bound {
     Ggx {
         spheroid: Spheroid,
+        triaxial: Ellipsoid,
         tight: Ellipsoid,
     },
     Anisotropic(Ellipsoid),
@@ -62,7 +63,12 @@ impl Bound {
                 ("sphere", sphere(bound)),
                 ("ellipsoid of Lambert's lobe", ellipsoid(tight)),
             ],
-            Self::Ggx { spheroid, tight } => vec![
+            Self::Ggx {
+                spheroid,
+                triaxial,
+                tight,
+            } => vec![
+                ("triaxial ellipsoid", ellipsoid(triaxial)),
                 ("spheroid", ellipsoid(spheroid.into())),
                 ("tight ellipsoid", ellipsoid(tight)),
                 ("enclosing sphere", sphere(spheroid.enclosing_sphere())),
