@@ -255,7 +255,7 @@ fn small_run(test: &str, more: &[&str]) -> (Value, Vec<String>) {
 fn measures_every_bound() {
     let (json, pictures) = small_run("small", &["--alpha", "0.1", "--seed", "3"]);
     let [indirect, lights, reference] = ["indirect", "lights", "reference"];
-    let bounds = ["sphere", "enclosing", "spheroid", "tight"];
+    let bounds = ["sphere", "enclosing", "spheroid", "triaxial", "tight"];
     let mut expected: Vec<String> = bounds
         .into_iter()
         .flat_map(|bound| ["", "-refined"].map(|kind| format!("{lights}-{bound}{kind}.png")))
@@ -297,7 +297,9 @@ fn measures_every_bound() {
     }
     let [tiles, pixels] = &kinds;
     let refinements = tiles.iter().zip(pixels).map(|(a, b)| [a, b]);
-    let bounds = kinds.iter().flat_map(|rows| rows.windows(2));
+    // The smallest ellipsoid is not inside the others, though it mostly lists fewer lights.
+    let nested = kinds.iter().map(|rows| &rows[..4]);
+    let bounds = nested.flat_map(|rows| rows.windows(2));
     let bounds = bounds.map(|pair| [&pair[0], &pair[1]]);
     for [looser, tighter] in refinements.chain(bounds) {
         assert!(number(tighter, "lights_per_pixel") <= number(looser, "lights_per_pixel"));

@@ -20,18 +20,27 @@ pub enum BoundKind {
     Enclosing,
     /// The spheroid
     Spheroid,
-    /// The ellipsoid with three different axes
+    /// The ellipsoid with three different axes, in closed form
+    Triaxial,
+    /// The smallest ellipsoid, nearly, from a table
     Tight,
 }
 
 impl BoundKind {
-    pub const ALL: [Self; 4] = [Self::Sphere, Self::Enclosing, Self::Spheroid, Self::Tight];
+    pub const ALL: [Self; 5] = [
+        Self::Sphere,
+        Self::Enclosing,
+        Self::Spheroid,
+        Self::Triaxial,
+        Self::Tight,
+    ];
 
     pub fn name(self) -> &'static str {
         match self {
             Self::Sphere => "sphere",
             Self::Enclosing => "enclosing",
             Self::Spheroid => "spheroid",
+            Self::Triaxial => "triaxial",
             Self::Tight => "tight",
         }
     }
@@ -39,6 +48,10 @@ impl BoundKind {
 
 pub fn spheroid(light: &GlossyLight, roulette: &Roulette, camera: &Camera) -> Option<Stretch> {
     Stretch::new(&range(light, roulette).into(), camera)
+}
+
+pub fn triaxial(light: &GlossyLight, roulette: &Roulette, camera: &Camera) -> Option<Stretch> {
+    Stretch::new(&light.vpl.triaxial_bound(roulette, light.xi), camera)
 }
 
 pub fn tight(light: &GlossyLight, roulette: &Roulette, camera: &Camera) -> Option<Stretch> {

@@ -50,6 +50,10 @@ pub fn measure_glossy(
             let shape = |light: &_| bounds::spheroid(light, roulette, camera);
             measure(frame, tilings, lights, bound, shape, done)
         }
+        BoundKind::Triaxial => {
+            let shape = |light: &_| bounds::triaxial(light, roulette, camera);
+            measure(frame, tilings, lights, bound, shape, done)
+        }
         BoundKind::Tight => {
             let shape = |light: &_| bounds::tight(light, roulette, camera);
             measure(frame, tilings, lights, bound, shape, done)
