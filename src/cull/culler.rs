@@ -72,7 +72,9 @@ impl<T: BatchShape> Culler<T> {
     /// On x86 16 is AVX-512, 8 is AVX2, and 4 is SSE; elsewhere there is but one width.
     pub fn with_lanes(lanes: usize) -> Self {
         let widest = widest();
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+        let _ = lanes;
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         let widest = match lanes {
             ..8 => widest.as_sse2().map_or(widest, Level::Sse2),
             8..16 => widest.as_avx2().map_or(widest, Level::Avx2),
