@@ -1,4 +1,4 @@
-//! Culling: the two fixed workloads, and how the time grows with lights and tiles.
+//! Culling: making lights ready, the two fixed workloads, and how the time grows with lights and tiles.
 #![allow(
     missing_docs,
     reason = "criterion_group! makes a public function without any"
@@ -6,14 +6,24 @@
 
 #[path = "cull/baseline.rs"]
 mod baseline;
+#[path = "cull/building.rs"]
+mod building;
 #[path = "cull/growth.rs"]
 mod growth;
+#[path = "cull/polyhedron.rs"]
+mod polyhedron;
 #[path = "../tests/workload/mod.rs"]
 mod workload;
 
+use std::hint::black_box;
+
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use stochastic_light_culling::{Culler, LightBatch, LightLists, Stretch, TileDepths};
+use stochastic_light_culling::{
+    Culler, DepthInterval, LightBatch, LightLists, Stretch, TileDepths, TileRectangle, TileTest,
+};
 use workload::{Depths, Subregion};
+
+const KINDS: [(&str, Depths); 2] = [("W1", |tile| tile.scattered), ("W1c", |tile| tile.coherent)];
 
 /// A subregion, made ready.
 struct Ready {
@@ -51,8 +61,7 @@ fn cull_all(culler: &mut Culler<Stretch>, frame: &mut [Ready]) {
 
 fn workloads(criterion: &mut Criterion) {
     let frame = workload::frame();
-    let kinds: [(&str, Depths); 2] = [("W1", |tile| tile.scattered), ("W1c", |tile| tile.coherent)];
-    for (name, depths) in kinds {
+    for (name, depths) in KINDS {
         let mut group = criterion.benchmark_group(name);
         let tests = workload::SUBREGIONS
             * workload::LIGHTS
@@ -74,6 +83,10 @@ fn workloads(criterion: &mut Criterion) {
                 bencher.iter(|| cull_all(&mut culler, &mut ready));
             });
         }
+        let mut exact = Culler::new().with_exact_test();
+        group.bench_function("blocks, exact", |bencher| {
+            bencher.iter(|| cull_all(&mut exact, &mut ready));
+        });
     }
 }
 
@@ -92,5 +105,82 @@ fn growth(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, workloads, growth);
+/// All pairs of a light and a tile that pass the box test.
+fn pairs(frame: &[Subregion], depths: Depths) -> Vec<(Stretch, TileRectangle, DepthInterval)> {
+    let camera = workload::camera();
+    let mut pairs = Vec::new();
+    for Subregion { lights, tiles } in frame {
+        let lights: Vec<_> = lights.iter().map(|light| light.stretch(&camera)).collect();
+        for tile in tiles {
+            let rectangle = tile.rectangle();
+            for depths in workload::halves(depths(tile)) {
+                let touching = lights.iter().filter(|l| l.touches(&rectangle, &depths));
+                pairs.extend(touching.map(|light| (*light, rectangle, depths)));
+            }
+        }
+    }
+    pairs
+}
+
+/// The exact test of what passes the box test, against that of a general polyhedron by parry3d, which
+/// has to be built for each pair. Times are per pair.
+fn exact(criterion: &mut Criterion) {
+    let frame = workload::frame();
+    for (name, depths) in KINDS {
+        let pairs = pairs(&frame, depths);
+        let (mut kept, mut differ) = (0, 0);
+        for (light, rectangle, depths) in &pairs {
+            let touched = light.touches_exactly(rectangle, depths);
+            let polyhedron = polyhedron::of_tile(light, rectangle, depths);
+            kept += usize::from(touched);
+            differ += usize::from(touched != polyhedron::meets_ball(&polyhedron, light));
+        }
+        let all = pairs.len();
+        println!("{name}: {kept} of {all} pairs touch; parry3d decides {differ} otherwise");
+
+        let mut group = criterion.benchmark_group(format!("exact test, {name}"));
+        group.sample_size(20);
+        let some = &pairs[..pairs.len().min(8192)];
+        group.throughput(Throughput::Elements(some.len() as u64));
+        group.bench_function("box", |bencher| {
+            bencher.iter(|| {
+                count(some, |(light, rectangle, depths)| {
+                    light.touches(rectangle, depths)
+                })
+            });
+        });
+        group.bench_function("box, then exact", |bencher| {
+            bencher.iter(|| {
+                count(some, |(light, rectangle, depths)| {
+                    light.touches_exactly(rectangle, depths)
+                })
+            });
+        });
+        group.bench_function("parry3d, polyhedron built each time", |bencher| {
+            bencher.iter(|| {
+                count(some, |(light, rectangle, depths)| {
+                    let polyhedron = polyhedron::of_tile(light, rectangle, depths);
+                    polyhedron::meets_ball(&polyhedron, light)
+                })
+            });
+        });
+        let built = some.iter().map(|(light, rectangle, depths)| {
+            (polyhedron::of_tile(light, rectangle, depths), *light)
+        });
+        let built: Vec<_> = built.collect();
+        group.bench_function("parry3d, polyhedron built before", |bencher| {
+            bencher.iter(|| {
+                count(&built, |(polyhedron, light)| {
+                    polyhedron::meets_ball(polyhedron, light)
+                })
+            });
+        });
+    }
+}
+
+fn count<T>(pairs: &[T], test: impl Fn(&T) -> bool) -> usize {
+    pairs.iter().filter(|pair| test(black_box(pair))).count()
+}
+
+criterion_group!(benches, building::building, exact, workloads, growth);
 criterion_main!(benches);

@@ -13,8 +13,8 @@ use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterio
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bound, Bounded, Camera, CameraSphere, Conductor,
     DepthInterval, Dielectric, Direction, Ellipsoid, Fresnel, Ggx, GgxLobe, Interleave,
-    LambertLobe, Lobe, NoFresnel, PixelRectangle, Roulette, Schlick, Stretch, TileGrid, TileTest,
-    Vpl, Xi,
+    LambertLobe, Lobe, NoFresnel, PhongLobe, PixelRectangle, Proxy, Roulette, Schlick, Stretch,
+    TileGrid, TileTest, Vpl, Xi,
     glam::{Mat3, Vec3},
     stretch_matrix, stretch_rotation,
 };
@@ -69,6 +69,17 @@ fn brushed_lights() -> Vec<Vpl<AnisotropicGgxLobe<Schlick>>> {
 fn diffuse_lights() -> Vec<Vpl<LambertLobe>> {
     let light = |i| {
         let lobe = LambertLobe::new(0.8, direction(random_vector(i, 0))).expect("in range");
+        Vpl::new(10.0 * random_vector(i, 6), 1.0, lobe).expect("in range")
+    };
+    (0..LIGHTS).map(light).collect()
+}
+
+fn phong_lights(exponents: [f32; 4]) -> Vec<Vpl<PhongLobe>> {
+    let light = |i| {
+        let normal = direction(random_vector(i, 0));
+        let incoming = direction(*normal + 0.9 * random_vector(i, 3));
+        let exponent = exponents[i as usize % 4];
+        let lobe = PhongLobe::new(0.8, exponent, normal, incoming).expect("in range");
         Vpl::new(10.0 * random_vector(i, 6), 1.0, lobe).expect("in range")
     };
     (0..LIGHTS).map(light).collect()
@@ -140,6 +151,15 @@ fn brdf(criterion: &mut Criterion) {
     per_item(&mut group, "lambert", &inputs, |(light, outgoing)| {
         light.lobe().value(*outgoing)
     });
+    let inputs: Vec<_> = phong_lights([0.5, 10.0, 40.0, 1000.0])
+        .into_iter()
+        .zip(0..)
+        .map(|(light, i)| (light, *light.lobe().axis() + 0.2 * random_vector(i, 9)))
+        .map(|(light, off_axis)| (light, off_axis.normalize()))
+        .collect();
+    per_item(&mut group, "phong", &inputs, |(light, outgoing)| {
+        light.lobe().value(*outgoing)
+    });
 }
 
 fn range(criterion: &mut Criterion) {
@@ -174,6 +194,34 @@ fn bound(criterion: &mut Criterion) {
     per_item(&mut group, "sphere, Lambert", &diffuse_lights(), |light| {
         light.lobe().unit_bound()
     });
+    per_item(
+        &mut group,
+        "ellipsoid, Lambert",
+        &diffuse_lights(),
+        |light| light.lobe().tight_bound(),
+    );
+    for (name, exponents) in [
+        ("ellipsoid, Phong n < 2", [0.1, 0.5, 1.0, 1.9]),
+        ("ellipsoid, Phong", [10.0, 40.0, 200.0, 1000.0]),
+    ] {
+        per_item(&mut group, name, &phong_lights(exponents), |light| {
+            light.lobe().unit_bound()
+        });
+    }
+    let tight: Vec<_> = diffuse_lights()
+        .iter()
+        .map(|light| light.lobe().tight_bound())
+        .collect();
+    for (name, proxy) in [
+        ("proxy of 20 triangles", Proxy::Icosahedron),
+        ("proxy of 80 triangles", Proxy::Icosphere),
+    ] {
+        per_item(&mut group, name, &tight, |ellipsoid| {
+            proxy
+                .vertices(ellipsoid)
+                .fold(Vec3::ZERO, |sum, vertex| sum + vertex)
+        });
+    }
     per_item(
         &mut group,
         "tight ellipsoid, no Fresnel",

@@ -17,6 +17,8 @@ pub struct Camera {
     /// Slope (x/z, y/z) of a point = NDC · scale + offset.
     slope_scale: Vec2,
     slope_offset: Vec2,
+    /// 1/cos of the angle between the viewing direction and the farthest corner of the view.
+    corner_secant: f32,
     /// depth = numerator/(NDC z + offset)
     depth_numerator: f32,
     depth_offset: f32,
@@ -55,6 +57,7 @@ impl Camera {
             rotation_deviation,
             slope_scale,
             slope_offset,
+            corner_secant: secant(slope_scale, slope_offset),
             depth_numerator,
             depth_offset,
         })
@@ -103,12 +106,14 @@ impl Camera {
         // 1/far − 1/near and so on, in the form that an infinite far plane leaves finite.
         let shrink = 1.0 - near / far;
         let slope = math::tan(0.5 * fov);
+        let slope_scale = Vec2::new(slope * aspect, slope);
         Ok(Self {
             rotation,
             translation,
             rotation_deviation: error::orthonormal("view matrix", rotation, 1e-4)?,
-            slope_scale: Vec2::new(slope * aspect, slope),
+            slope_scale,
             slope_offset: Vec2::ZERO,
+            corner_secant: secant(slope_scale, Vec2::ZERO),
             depth_numerator: -near / shrink,
             depth_offset: -1.0 / shrink,
         })
@@ -140,12 +145,20 @@ impl Camera {
         self.rotation.transpose() * (point - self.translation)
     }
 
+    /// What the sums of [`to_camera_space`](Self::to_camera_space) lose, as a share of their terms.
+    pub(crate) const ROUNDINGS_OF_TERMS: f32 = 8.0 * f64::EPSILON as f32;
+
     /// What [`to_camera_space`](Self::to_camera_space) can be off by before it rounds, in length: the
     /// rounding of `f64` in terms this large.
     pub(crate) fn rounding_of_terms(&self, parts: [Vec3; 2]) -> f32 {
-        const ROUNDINGS: f32 = 8.0 * f64::EPSILON as f32;
         let terms = parts[0].abs() + parts[1].abs() + self.translation.abs();
-        ROUNDINGS * terms.element_sum()
+        Self::ROUNDINGS_OF_TERMS * terms.element_sum()
+    }
+
+    /// Where the world's origin is in camera space.
+    #[cfg(feature = "cull")]
+    pub(crate) fn translation(&self) -> Vec3 {
+        self.translation
     }
 
     /// How far the rotation is from orthonormal, element by element.
@@ -155,9 +168,7 @@ impl Camera {
 
     /// 1/cos of the angle between the viewing direction and the farthest corner of the view.
     pub(crate) fn corner_secant(&self) -> f32 {
-        (self.slope_scale.abs() + self.slope_offset.abs())
-            .extend(1.0)
-            .length()
+        self.corner_secant
     }
 
     /// The depth of a point from its `ndc_depth`, the value in a depth buffer.
@@ -206,12 +217,17 @@ fn slopes(projection: Mat4) -> Result<(f32, Vec2, Vec2), Error> {
     let weight = w.z.abs();
     let scale = Vec2::new(weight / x.x, weight / y.y);
     let offset = Vec2::new(-toward * x.z / x.x, -toward * y.z / y.y);
-    let farthest = (scale.abs() + offset.abs()).extend(1.0).length();
+    let farthest = secant(scale, offset);
     if !(weight > 0.0 && farthest <= 200.0) {
         let valid = "the corners of the view must be within 89.7° of its direction; their 1/cos";
         return Err(refused(farthest, valid));
     }
     Ok((toward, scale, offset))
+}
+
+/// 1/cos of the angle to the farthest corner of a view with these slopes.
+fn secant(scale: Vec2, offset: Vec2) -> f32 {
+    (scale.abs() + offset.abs()).extend(1.0).length()
 }
 
 /// The numerator and the offset of depth = numerator/(NDC z + offset).

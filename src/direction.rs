@@ -78,6 +78,17 @@ impl Direction {
         }
     }
 
+    /// 2(n·ω)n − ω, this direction ω mirrored at a surface with the given `normal` = n.
+    ///
+    /// Reckoned in `f64`, so that rounding to `f32` is all that tilts it: half an ulp in each component.
+    pub(crate) fn mirrored(self, normal: Self) -> Self {
+        let (n, w) = (normal.as_f64(), self.as_f64());
+        let twice = 2.0 * math::dot(*normal, *self) / math::dot(*normal, *normal);
+        Self::from_unit(Vec3::from_array(core::array::from_fn(|i| {
+            (twice * n[i] - w[i]) as f32
+        })))
+    }
+
     /// The components, widened.
     pub(crate) fn as_f64(self) -> [f64; 3] {
         self.0.to_array().map(f64::from)

@@ -10,10 +10,10 @@
 //!
 //! | step | from | to | items |
 //! |---|---|---|---|
-//! | lobe | surface, incoming direction | what it reflects | [`GgxLobe`], [`AnisotropicGgxLobe`], [`LambertLobe`], [`ConstantLobe`] |
+//! | lobe | surface, incoming direction | what it reflects | [`GgxLobe`], [`AnisotropicGgxLobe`], [`LambertLobe`], [`PhongLobe`], [`ConstantLobe`] |
 //! | light | lobe, position, flux | radiant intensity | [`Vpl`] |
 //! | range | intensity, ξ | probability, range, estimate | [`Roulette`], [`Xi`] |
-//! | bound | lobe, range | shape around all it may light | [`Spheroid`], [`Sphere`], [`Ellipsoid`] |
+//! | bound | lobe, range | shape around all it may light | [`Spheroid`], [`Sphere`], [`Ellipsoid`]; [`Proxy`] to rasterise it |
 //! | stretch | bound, camera | unit sphere | [`Stretch`], [`CameraSphere`], [`HalfSpace`] |
 //! | tile | pixels, depths | touched or not | [`TileGrid`], [`DepthInterval`], [`TileTest`] |
 //! | cull | many lights, many tiles | a list of lights for each tile | `LightBatch`, `TileDepths`, `Culler`, `LightLists` (feature `cull`) |
@@ -88,10 +88,12 @@
 //!
 //! **If a tile, as the `f32` numbers of its rectangle and depth interval define it, contains a point p
 //! with ‖p − q‖ ≤ l_max(ω_o), in exact arithmetic on the `f32` numbers that were given, then
-//! [`touches`](TileTest::touches) is true** of the stretched [`Spheroid`], of the tight ellipsoid, of
-//! that of an anisotropic lobe, of both of the spheroid's spheres, of a diffuse or constant light's [`Sphere`], and of the
-//! [`HalfSpace`] above the light's surface. Directions stand for the unit vectors along them, and a
-//! point of the world for its image under the camera's matrix.
+//! [`touches`](TileTest::touches) and [`touches_exactly`](TileTest::touches_exactly) are true** of the
+//! stretched [`Spheroid`], of the tight ellipsoid, of that of an anisotropic lobe, of both of the
+//! spheroid's spheres, of the ellipsoid of a [`PhongLobe`], of a diffuse or constant light's [`Sphere`],
+//! of a diffuse light's tight ellipsoid, and of the [`HalfSpace`] above the light's surface. Directions
+//! stand for the unit vectors along them, and a point of the world for its image under the camera's
+//! matrix.
 //!
 //! This holds for every α from 2⁻²⁰ to 1, every μ > 0, ranges from 10⁻¹² to 10¹², lights up to 10⁶
 //! ranges from the origin and the eye, ξ from 2⁻³², views of any rotation, handedness and offset with
@@ -126,10 +128,12 @@
 //! # Sources
 //!
 //! - Dachsbacher & Stamminger 2006, *Splatting indirect illumination*.
+//! - Ericson 2005, *Real-time collision detection*.
 //! - Heitz 2014, *Understanding the masking-shadowing function in microfacet-based BRDFs*.
 //! - Jarzynski & Olano 2020, *Hash functions for GPU rendering*.
 //! - Keller 1997, *Instant radiosity*.
 //! - Olsson, Billeter & Assarsson 2012, *Clustered deferred and forward shading*.
+//! - Phong 1975, *Illumination for computer generated pictures*.
 //! - Schlick 1994, *An inexpensive BRDF model for physically-based rendering*.
 //! - Segovia et al. 2006, *Non-interleaved deferred shading of interleaved sample patterns*.
 //! - Stewart 2015, *Compute-based tiled culling*.
@@ -167,15 +171,18 @@ mod unchecked;
 mod vpl;
 mod wide;
 
-pub use bound::{Bound, Bounded, Ellipsoid, Sphere, Spheroid};
+pub use bound::{Bound, Bounded, Ellipsoid, Proxy, Sphere, Spheroid};
 pub use brdf::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel,
     FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, LambertLobe, Lobe, MaskingShadowing,
-    NoFresnel, Schlick, Separable,
+    NoFresnel, PhongLobe, Schlick, Separable,
 };
 pub use camera::Camera;
 #[cfg(feature = "cull")]
-pub use cull::{BatchShape, CullCounters, Culler, LightBatch, LightLists, TileDepths};
+pub use cull::{
+    BatchBound, BatchBuilder, BatchLobe, BatchShape, CullCounters, Culler, DepthOrder, LightBatch,
+    LightLists, TileDepths,
+};
 pub use direction::Direction;
 pub use error::Error;
 #[cfg(feature = "bytemuck")]

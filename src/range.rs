@@ -100,6 +100,12 @@ impl Roulette {
         self.delta
     }
 
+    /// √δ.
+    #[cfg(feature = "cull")]
+    pub(crate) fn delta_root(&self) -> f32 {
+        self.delta_root
+    }
+
     /// p = min(I/(δl²), 1) for `intensity` = I ≥ 0 and `distance_squared` = l² ≥ 0
     /// [Tokuyoshi & Harada 2017, Eq. 2]. Zero where no light goes, at any distance.
     #[inline]

@@ -113,6 +113,12 @@ impl Stretch {
         })
     }
 
+    /// The stretch with these M and Mc′.
+    #[cfg(feature = "cull")]
+    pub(crate) fn from_parts(matrix: Mat3, center: Vec3) -> Self {
+        Self { matrix, center }
+    }
+
     /// M: the columns are the images of the axes of camera space. Its third row is (0, 0, m), and one
     /// of its other two elements off the diagonal of the first two columns is zero.
     pub fn matrix(&self) -> Mat3 {
@@ -143,12 +149,14 @@ fn triangular_stretch(axes: Mat3, semi_axes: Vec3) -> Mat3 {
     let depth_reach = math::sqrt(c_zz);
     // √(A_xx A_yy − A_xy²): of √det A, the factor 1/(r_min r_max) is in the units chosen.
     let root = depth_reach * (shortest / median(semi_axes));
-    let [(xx, xy), (yx, yy)] = if a_xx > a_yy {
-        let xx = math::sqrt(a_xx);
-        [(xx, a_xy / xx), (0.0, root / xx)]
+    // The longer image first, in the same operations whichever it is.
+    let x_first = a_xx > a_yy;
+    let first = math::sqrt(if x_first { a_xx } else { a_yy });
+    let (mixed, second) = (a_xy / first, root / first);
+    let [xx, xy, yx, yy] = if x_first {
+        [first, mixed, 0.0, second]
     } else {
-        let yy = math::sqrt(a_yy);
-        [(root / yy, 0.0), (a_xy / yy, yy)]
+        [second, 0.0, mixed, first]
     };
     let shear = Vec3::new(xx * c_xz + xy * c_yz, yx * c_xz + yy * c_yz, 0.0) / c_zz;
     let m = shortest / (longest * depth_reach);
@@ -200,6 +208,15 @@ impl CameraSphere {
             center,
             radius_squared: enlarged * enlarged,
         })
+    }
+
+    /// The sphere with this centre and squared radius.
+    #[cfg(feature = "cull")]
+    pub(crate) fn from_parts(center: Vec3, radius_squared: f32) -> Self {
+        Self {
+            center,
+            radius_squared,
+        }
     }
 
     /// The centre in camera space.

@@ -2,8 +2,8 @@
 
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, DepthInterval, Dielectric,
-    Direction, Ellipsoid, Error, Ggx, Interleave, LambertLobe, NoFresnel, Roulette, Schlick,
-    Sphere, TileGrid, TileRectangle, Vpl, Xi,
+    Direction, Ellipsoid, Error, Ggx, Interleave, LambertLobe, NoFresnel, PhongLobe, Roulette,
+    Schlick, Sphere, TileGrid, TileRectangle, Vpl, Xi,
     glam::{Mat3, Mat4, Vec2, Vec3, Vec4},
 };
 
@@ -38,6 +38,15 @@ fn numbers_out_of_range() {
     refuses(&[-0.1, 1.1], |albedo| {
         LambertLobe::new(albedo, Direction::Z)
     });
+    refuses(&[-0.1, 1.1], |albedo| {
+        PhongLobe::new(albedo, 20.0, Direction::Z, Direction::Z)
+    });
+    refuses(&[-1e-45, -1.0, 1_048_577.0, 1e10], |exponent| {
+        PhongLobe::new(0.5, exponent, Direction::Z, Direction::Z)
+    });
+    refuses(&[-1.0, 1e10], |exponent| {
+        PhongLobe::about(0.5, exponent, Direction::Z)
+    });
     refuses(&[0.0, -0.001], Roulette::new);
     refuses(&[0.0, -0.5, 1.000_001], Xi::new);
     refuses(&[-1.0, -1e-45], |flux| Vpl::new(one, flux, ConstantLobe));
@@ -52,6 +61,9 @@ fn edges_of_the_ranges_are_accepted() {
         assert!(Ggx::new(roughness).is_ok());
     }
     assert!(Schlick::new(0.0).is_ok() && Schlick::new(1.0).is_ok());
+    for exponent in [0.0, 1e-45, PhongLobe::MAX_EXPONENT] {
+        assert!(PhongLobe::about(1.0, exponent, Direction::Z).is_ok());
+    }
     assert!(Roulette::new(1e-45).is_ok() && Roulette::new(f32::MAX).is_ok());
     assert!(Xi::new(1.0).is_ok() && Xi::new(1e-45).is_ok());
     assert!(Vpl::new(Vec3::ZERO, 0.0, ConstantLobe).is_ok());

@@ -160,6 +160,22 @@ fn check_fresnel(fresnel: impl Fresnel, model: reference::Fresnel, cosine: f32, 
 proptest! {
     #![proptest_config(generators::cases(1000))]
 
+    /// At least F everywhere, and where F rises slowly not much more.
+    #[test]
+    fn fresnel_majorant_bounds(fresnel in generators::fresnel(), cosine in 0.0..=1.0_f64) {
+        let majorant = match fresnel {
+            reference::Fresnel::None => NoFresnel.majorant(),
+            reference::Fresnel::Schlick(f0) => Schlick::new(f0).unwrap().majorant(),
+            reference::Fresnel::Dielectric(eta) => Dielectric::new(eta).unwrap().majorant(),
+            reference::Fresnel::Conductor(eta, kappa) => Conductor::new(eta, kappa).unwrap().majorant(),
+        };
+        let bound = f64::from(majorant.base) + f64::from(majorant.rise) * (1.0 - cosine).powi(5);
+        let exact = fresnel.at(cosine);
+        prop_assert!(bound >= exact * (1.0 - 1e-12) - 1e-15, "{bound} {exact}");
+        let is_slow = matches!(fresnel, reference::Fresnel::Dielectric(eta) if (1.3..2.0).contains(&eta));
+        prop_assert!(!is_slow || bound <= 2.0 * exact, "{bound} {exact}");
+    }
+
     #[test]
     fn fresnel_agrees_and_its_maximum_is_attained(
         model in generators::fresnel(),

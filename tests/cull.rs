@@ -10,8 +10,8 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use stochastic_light_culling::{
-    BatchShape, Camera, CameraSphere, Culler, DepthInterval, Ellipsoid, Error, LightBatch,
-    LightLists, PixelRectangle, Sphere, Stretch, TileDepths, TileRectangle,
+    BatchShape, Camera, CameraSphere, CullCounters, Culler, DepthInterval, Ellipsoid, Error,
+    LightBatch, LightLists, PixelRectangle, Sphere, Stretch, TileDepths, TileRectangle,
     glam::{Mat3, Vec3},
 };
 use workload::{Depths, Subregion};
@@ -94,17 +94,20 @@ fn sphere() -> impl Strategy<Value = CameraSphere> {
 /// The parallel lists are the serial ones, to the last number.
 #[cfg(feature = "rayon")]
 fn culled_in_parallel_as_serially<T: BatchShape + Send + Sync>(
-    batch: &LightBatch<T>,
-    tiles: &TileDepths,
+    grid: &Grid,
+    shapes: &[T],
 ) -> Result<(), TestCaseError> {
-    let mut culler = Culler::new();
-    let [mut serial, mut parallel] = [LightLists::new(), LightLists::new()];
-    culler.cull(batch, tiles, &mut serial).unwrap();
-    culler
-        .cull_in_parallel(batch, tiles, &mut parallel)
-        .unwrap();
-    prop_assert_eq!(serial.ranges(), parallel.ranges());
-    prop_assert_eq!(serial.numbers(), parallel.numbers());
+    let tiles = grid.tile_depths();
+    let mut batch = LightBatch::new();
+    batch.extend((0..).zip(shapes.iter().copied()));
+    for mut culler in [Culler::new(), Culler::new().with_exact_test()] {
+        let [mut serial, mut parallel] = [LightLists::new(), LightLists::new()];
+        let counters = culler.cull(&batch, &tiles, &mut serial).unwrap();
+        let counted = culler.cull_in_parallel(&batch, &tiles, &mut parallel);
+        prop_assert_eq!(serial.ranges(), parallel.ranges());
+        prop_assert_eq!(serial.numbers(), parallel.numbers());
+        prop_assert_eq!(counters.rejected_exactly, counted.unwrap().rejected_exactly);
+    }
     Ok(())
 }
 
@@ -119,40 +122,50 @@ fn cullers<T: BatchShape>() -> impl Iterator<Item = Culler<T>> {
     [16, 8, 4].into_iter().flat_map(flat_or_not)
 }
 
+type Test<T> = fn(&T, &TileRectangle, &DepthInterval) -> bool;
+
 fn culled_as_one_by_one<T: BatchShape + Send + Sync>(
     grid: &Grid,
     shapes: &[T],
 ) -> Result<(), TestCaseError> {
+    #[cfg(feature = "rayon")]
+    culled_in_parallel_as_serially(grid, shapes)?;
+    for culler in cullers() {
+        let boxes = culled_by(culler.clone(), T::touches, grid, shapes)?;
+        let exact = culled_by(culler.with_exact_test(), T::touches_exactly, grid, shapes)?;
+        prop_assert_eq!(boxes.rejected_exactly, 0);
+        prop_assert_eq!(exact.rejected_exactly, boxes.pairs - exact.pairs);
+    }
+    Ok(())
+}
+
+fn culled_by<T: BatchShape>(
+    mut culler: Culler<T>,
+    test: Test<T>,
+    grid: &Grid,
+    shapes: &[T],
+) -> Result<CullCounters, TestCaseError> {
     let tiles = grid.tile_depths();
     let mut batch = LightBatch::new();
     batch.extend((100..).zip(shapes.iter().copied()));
-    #[cfg(feature = "rayon")]
-    culled_in_parallel_as_serially(&batch, &tiles)?;
-    for mut culler in cullers() {
-        let mut lists = LightLists::new();
-        let counters = culler.cull(&batch, &tiles, &mut lists).unwrap();
-        let mut pairs = 0;
-        for (tile, depths) in grid.tiles() {
-            for (interval, depths) in (0..).zip(depths) {
-                let touches = |shape: &T| {
-                    depths.is_some_and(|depths| shape.touches(&grid.rectangle(tile), &depths))
-                };
-                let touching = (100..).zip(shapes).filter(|(_, shape)| touches(shape));
-                let expected: Vec<u32> = touching.map(|(number, _)| number).collect();
-                prop_assert_eq!(
-                    lists.of(tile, interval),
-                    &expected,
-                    "{:?} {:?}",
-                    tile,
-                    depths
-                );
-                pairs += expected.len();
-            }
+    let mut lists = LightLists::new();
+    let counters = culler.cull(&batch, &tiles, &mut lists).unwrap();
+    let mut pairs = 0;
+    for (tile, depths) in grid.tiles() {
+        for (interval, depths) in (0..).zip(depths) {
+            let touches = |shape: &T| {
+                depths.is_some_and(|depths| test(shape, &grid.rectangle(tile), &depths))
+            };
+            let touching = (100..).zip(shapes).filter(|(_, shape)| touches(shape));
+            let expected: Vec<u32> = touching.map(|(number, _)| number).collect();
+            let found = lists.of(tile, interval);
+            prop_assert_eq!(found, &expected, "{:?} {:?}", tile, depths);
+            pairs += expected.len();
         }
-        prop_assert_eq!(lists.len(), pairs);
-        prop_assert_eq!(counters.pairs, pairs as u64);
     }
-    Ok(())
+    prop_assert_eq!(lists.len(), pairs);
+    prop_assert_eq!(counters.pairs, pairs as u64);
+    Ok(counters)
 }
 
 proptest! {
@@ -260,9 +273,8 @@ fn depths_of_no_tile_are_no_ones() {
 }
 
 /// The lights in all near intervals together, and in all far ones.
-fn hits(frame: &[Subregion], depths: Depths) -> [usize; 2] {
+fn hits(frame: &[Subregion], depths: Depths, mut culler: Culler<Stretch>) -> [usize; 2] {
     let camera = workload::camera();
-    let mut culler = Culler::new();
     let mut lists = LightLists::new();
     let mut hits = [0; 2];
     for subregion in frame {
@@ -288,7 +300,7 @@ fn finds_the_known_lights_of_the_fixed_workloads() {
         (|tile| tile.coherent, [4_902, 6_462]),
     ];
     for (depths, known) in kinds {
-        let found = hits(&frame, depths);
+        let found = hits(&frame, depths, Culler::new());
         for (found, known) in found.into_iter().zip(known) {
             assert!(
                 known <= found && found <= known + known / 200,
@@ -316,4 +328,23 @@ fn later_frames_allocate_nothing() {
     assert!(first.count_total > 0, "nothing is counted");
     let second = allocation_counter::measure(&mut draw_frame);
     assert_eq!(second.count_total, 0);
+}
+
+/// As parry3d decides too, but for three pairs: `benches/cull.rs` compares them.
+#[test]
+fn exact_test_finds_the_known_lights_of_the_fixed_workloads() {
+    let frame = workload::frame();
+    let kinds: [(Depths, usize); 2] = [
+        (|tile| tile.scattered, 41_608),
+        (|tile| tile.coherent, 4_866),
+    ];
+    for (depths, known) in kinds {
+        let found: usize = hits(&frame, depths, Culler::new().with_exact_test())
+            .iter()
+            .sum();
+        assert!(
+            found.abs_diff(known) <= known / 1000,
+            "{found}, known {known}"
+        );
+    }
 }

@@ -11,8 +11,8 @@ use proptest::prelude::*;
 use reference::{Brdf, Fresnel, GivenFresnel, Masking, Shape, Vector, smith_g1};
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bound, Bounded, Conductor, ConstantLobe, Dielectric,
-    Direction, Ellipsoid, Ggx, GgxLobe, LambertLobe, MaskingShadowing, NoFresnel, Roulette,
-    Schlick, Spheroid, Vpl, Xi, glam::Vec3,
+    Direction, Ellipsoid, Ggx, GgxLobe, LambertLobe, Lobe, MaskingShadowing, NoFresnel, PhongLobe,
+    Roulette, Schlick, Spheroid, Vpl, Xi, glam::Vec3,
 };
 
 /// What the crate says of a GGX light.
@@ -146,8 +146,19 @@ impl Case {
                 vec![("ellipsoid of the anisotropic lobe", bound.into())]
             }
             Brdf::Lambert { albedo } => {
+                let (flux, delta, xi) = self.roulette;
                 let lobe = LambertLobe::new(albedo, self.lit.normal).unwrap();
-                vec![("sphere of Lambert's lobe", self.bound(lobe).into())]
+                let light = Vpl::new(self.position, flux, lobe).unwrap();
+                let tight = light.tight_bound(&Roulette::new(delta).unwrap(), Xi::new(xi).unwrap());
+                vec![
+                    ("sphere of Lambert's lobe", self.bound(lobe).into()),
+                    ("ellipsoid of Lambert's lobe", tight.into()),
+                ]
+            }
+            Brdf::Phong { albedo, exponent } => {
+                let lobe =
+                    PhongLobe::new(albedo, exponent, self.lit.normal, self.lit.incoming).unwrap();
+                vec![("ellipsoid of Phong's lobe", self.bound(lobe).into())]
             }
             Brdf::Constant => vec![("sphere of a point light", self.bound(ConstantLobe).into())],
         }
@@ -165,6 +176,7 @@ impl Case {
         let width = match self.brdf {
             Brdf::Ggx { roughness, .. } => f64::from(roughness),
             Brdf::Anisotropic { roughness, .. } => f64::from(roughness[0].min(roughness[1])),
+            Brdf::Phong { exponent, .. } => (1.0 / (2.0 + 2.0 * f64::from(exponent))).sqrt(),
             _ => 1.0,
         };
         let mut directions = vec![mirror, surface.normal, surface.incoming, -surface.incoming];
@@ -359,11 +371,12 @@ fn lights_that_reach_nothing_have_an_empty_range() {
     let dark = Vpl::new(Vec3::ONE, 0.0, lit).unwrap().bound(&roulette, xi);
     assert!(dark.is_empty() && Ellipsoid::from(dark).is_empty());
     assert!(dark.enclosing_sphere().is_empty() && dark.sphere_at_focus().is_empty());
-    let black = LambertLobe::new(0.0, Direction::Z).unwrap();
-    assert!(
-        Vpl::new(Vec3::ONE, 1.0, black)
-            .unwrap()
-            .bound(&roulette, xi)
-            .is_empty()
-    );
+    let black = Vpl::new(Vec3::ONE, 1.0, LambertLobe::new(0.0, Direction::Z).unwrap()).unwrap();
+    assert!(black.bound(&roulette, xi).is_empty() && black.tight_bound(&roulette, xi).is_empty());
+    for (albedo, incoming) in [(0.0, Direction::Z), (1.0, below), (1.0, Direction::X)] {
+        let dark = PhongLobe::new(albedo, 40.0, Direction::Z, incoming).unwrap();
+        assert!(dark.unit_bound().is_empty());
+        assert_eq!(dark.value(*dark.axis()), 0.0);
+        assert_eq!(dark.value(Vec3::Z), 0.0);
+    }
 }

@@ -98,10 +98,10 @@ proptest! {
         for (unit, depth) in points {
             let seen = view.to_camera_space(shape.point(unit * (depth * (1.0 - 1e-12))));
             let Some(thin) = tile_around(&camera, seen) else { continue };
-            prop_assert!(stretch.touches(&thin.0, &thin.1), "{thin:?}");
+            prop_assert!(stretch.touches_exactly(&thin.0, &thin.1), "{thin:?}");
             let (sides, near, far) = room;
             let wide = widened(thin, sides, [near, far]);
-            prop_assert!(stretch.touches(&wide.0, &wide.1), "{wide:?}");
+            prop_assert!(stretch.touches_exactly(&wide.0, &wide.1), "{wide:?}");
         }
     }
 
@@ -121,7 +121,7 @@ proptest! {
         for unit in points {
             let seen = view.to_camera_space(shape.point(unit * (1.0 - 1e-12)));
             let Some((tile, depths)) = tile_around(&camera, seen) else { continue };
-            prop_assert!(before_camera.touches(&tile, &depths), "{tile:?} {depths:?}");
+            prop_assert!(before_camera.touches_exactly(&tile, &depths), "{tile:?} {depths:?}");
         }
     }
 
@@ -175,7 +175,7 @@ proptest! {
         for unit in points {
             let seen = view.to_camera_space(shape.point(unit * (1.0 - 1e-12)));
             let Some((tile, depths)) = tile_around(&camera, seen) else { continue };
-            prop_assert!(stretch.touches(&tile, &depths), "{tile:?} {depths:?}");
+            prop_assert!(stretch.touches_exactly(&tile, &depths), "{tile:?} {depths:?}");
         }
     }
 

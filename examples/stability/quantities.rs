@@ -47,7 +47,7 @@ pub fn errors(
     let [f, f_max] = fresnel_factors(light, ggx, fresnel, half_angle_cosine);
     let r = match bound {
         Bound::Ggx { spheroid, .. } => spheroid.radius(),
-        Bound::Anisotropic(_) | Bound::Sphere(_) => f32::NAN,
+        _ => f32::NAN,
     };
     let ours = [
         ggx.ndf_at(half_vector, *light.normal),

@@ -1,6 +1,9 @@
 use super::{Bounded, Spheroid};
 use crate::{Fresnel, GgxLobe, MaskingShadowing, math};
 
+/// Half an ulp in each component of the axis, which is all that its rounding to f32 tilts it by.
+pub(crate) const AXIS_TILT_RADIANS: f32 = 0.87 * math::UNIT_ROUNDOFF;
+
 impl<F: Fresnel, G: MaskingShadowing> Bounded for GgxLobe<F, G> {
     type Bound = Spheroid;
 
@@ -12,8 +15,6 @@ impl<F: Fresnel, G: MaskingShadowing> Bounded for GgxLobe<F, G> {
     ///
     /// Touched ahead of the light but for F, G2 and rounding.
     fn unit_bound(&self) -> Spheroid {
-        // Half an ulp in each component of the axis, which is all that its rounding to f32 tilts it by.
-        const TILT_RADIANS: f32 = 0.87 * math::UNIT_ROUNDOFF;
         let reflected = if self.incident_cosine() > 0.0 {
             self.max_fresnel()
         } else {
@@ -25,7 +26,7 @@ impl<F: Fresnel, G: MaskingShadowing> Bounded for GgxLobe<F, G> {
             self.mirror_direction(),
             math::sqrt(radius_squared),
             self.ggx().roughness(),
-            TILT_RADIANS,
+            AXIS_TILT_RADIANS,
         )
     }
 }

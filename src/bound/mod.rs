@@ -6,10 +6,13 @@
 
 mod anisotropic;
 mod constant;
+mod cosine_power;
 mod ellipsoid;
 mod ggx;
 mod lambert;
+mod phong;
 mod principal_axes;
+mod proxy;
 mod smallest;
 mod sphere;
 mod spheroid;
@@ -18,6 +21,9 @@ mod table;
 mod triaxial;
 
 pub use ellipsoid::Ellipsoid;
+#[cfg(feature = "cull")]
+pub(crate) use ggx::AXIS_TILT_RADIANS;
+pub use proxy::Proxy;
 pub use sphere::Sphere;
 pub use spheroid::Spheroid;
 

@@ -1,6 +1,6 @@
 //! The smallest ellipsoids around GGX lobes, over three coordinates, and their interpolation.
 //!
-//! Made and proved by `examples/tabulate.rs`; `tests/certificate` proves a part anew.
+//! Made by `examples/tabulate.rs`, which can also prove cells of it (`tests/certificate`).
 
 use glam::Vec4;
 
@@ -46,6 +46,13 @@ fn split(x: f32, knots: u16) -> (usize, f32) {
     // The conversion saturates, and takes NaN to zero.
     let knot = (x as i32).clamp(0, i32::from(knots) - 2);
     (knot as usize, x - knot as f32)
+}
+
+/// The ellipsoid at a knot, which the certificate is of.
+#[allow(dead_code, reason = "the crate itself only interpolates")]
+pub(crate) fn knot([i, j, k]: [usize; 3]) -> [f32; NUMBERS] {
+    let [a, b, c, d, e, f, ..] = TABLE[(i * INCIDENCES + j) * REFLECTANCES + k];
+    [a, b, c, d, e, f]
 }
 
 #[derive(Clone, Copy)]

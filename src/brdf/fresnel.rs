@@ -17,6 +17,7 @@ pub trait Fresnel: Copy {
     ///
     /// A quasi-convex F is largest at one of the two ends
     /// [Tokuyoshi & Harada 2017, supplemental Eq. 6]. Never below 10⁻³⁰.
+    #[inline]
     fn maximum(&self, smallest_cosine: f32) -> f32 {
         // Of cosines nearer to zero than this, powers underflow.
         let smallest_cosine = if smallest_cosine < 1e-15 {

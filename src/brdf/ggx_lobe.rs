@@ -128,11 +128,12 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         }
     }
 
+    /// F.
     pub(crate) fn fresnel(&self) -> &F {
         &self.fresnel
     }
 
-    /// √(kμ² + α²)
+    /// √(kμ² + α²), the root of G1(μ).
     pub(crate) fn incident_root(&self) -> f32 {
         self.incident_root
     }
@@ -151,12 +152,7 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
     ///
     /// Reckoned in `f64`, since at small α an angular error φ costs a bound the share φ/(2α).
     pub fn mirror_direction(&self) -> Direction {
-        let (n, w) = (self.normal.as_f64(), self.incoming.as_f64());
-        let twice =
-            2.0 * math::dot(*self.normal, *self.incoming) / math::dot(*self.normal, *self.normal);
-        Direction::from_unit(Vec3::from_array(core::array::from_fn(|i| {
-            (twice * n[i] - w[i]) as f32
-        })))
+        self.incoming.mirrored(self.normal)
     }
 
     /// The rotation \[ω_u, ω_v, ω_w\] from the lobe's own axes to world space: ω_w = unit(ω_u × n)

@@ -10,6 +10,7 @@ mod ggx;
 mod ggx_lobe;
 mod lambert;
 mod masking;
+mod phong;
 
 pub use anisotropic::AnisotropicGgx;
 pub use anisotropic_lobe::AnisotropicGgxLobe;
@@ -21,6 +22,7 @@ pub use ggx::Ggx;
 pub use ggx_lobe::GgxLobe;
 pub use lambert::LambertLobe;
 pub use masking::{HeightCorrelated, MaskingShadowing, Separable};
+pub use phong::PhongLobe;
 
 use glam::Vec3;
 

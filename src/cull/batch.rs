@@ -19,6 +19,9 @@ impl<T: InLanes> Chunk<T> {
     };
 }
 
+/// Each of a chunk's lights, as bits.
+const ALL: u32 = (1 << LANES) - 1;
+
 /// The depths that each of sixteen chunks reaches. No depth lies in those past the end.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
@@ -47,11 +50,13 @@ impl Reach {
     }
 }
 
-/// Lights made ready for a [`Culler`](super::Culler), sixteen by sixteen.
+/// Lights made ready for a [`Culler`](super::Culler), sixteen by sixteen: one by one here, or many at a
+/// time by a [`BatchBuilder`](super::BatchBuilder).
 ///
 /// A list holds its lights in the order in which they were pushed. Any order gives the same lists but
 /// for their order; lights that are pushed from near to far, roughly, are culled about twice as fast,
-/// since sixteen that reach the same depths are passed over at once. Keeps its memory when cleared.
+/// since sixteen that reach the same depths are passed over at once
+/// ([`DepthOrder`](super::DepthOrder)). Keeps its memory when cleared.
 ///
 /// ```
 /// use stochastic_light_culling::{Camera, CameraSphere, LightBatch, Sphere, glam::Vec3};
@@ -101,10 +106,7 @@ impl<T: BatchShape> LightBatch<T> {
     pub fn push(&mut self, number: u32, shape: &T) {
         let (chunk, lane) = (self.len / LANES, self.len % LANES);
         if lane == 0 {
-            set_or_push(&mut self.chunks, chunk, Chunk::NOWHERE);
-            if chunk % LANES == 0 {
-                set_or_push(&mut self.reach, chunk / LANES, Reach::NONE);
-            }
+            self.begin(chunk, &Chunk::NOWHERE);
         }
         let Chunk { fields, numbers } = &mut self.chunks[chunk];
         let of_shape = shape.fields();
@@ -114,6 +116,58 @@ impl<T: BatchShape> LightBatch<T> {
         numbers[lane] = number;
         self.reach[chunk / LANES].widen(chunk % LANES, shape.reach());
         self.len += 1;
+    }
+
+    /// The lights, with their numbers, in their order.
+    pub fn iter(&self) -> impl Iterator<Item = (u32, T)> {
+        (0..self.len).map(|index| {
+            let (chunk, lane) = (&self.chunks[index / LANES], index % LANES);
+            let mut fields = T::fields_of(0.0);
+            for (field, lanes) in fields.as_mut().iter_mut().zip(chunk.fields.as_ref()) {
+                *field = lanes[lane];
+            }
+            (chunk.numbers[lane], T::from_fields(fields))
+        })
+    }
+
+    /// The lane that the next light goes to.
+    pub(super) fn next_lane(&self) -> usize {
+        self.len % LANES
+    }
+
+    /// Adds the lights of `chunk` that `bits` tell, all of which reach depths within `reach`.
+    pub(super) fn append(&mut self, chunk: &Chunk<T>, mut bits: u32, reach: [f32; 2]) {
+        if bits == ALL && self.next_lane() == 0 {
+            let index = self.len / LANES;
+            self.begin(index, chunk);
+            self.reach[index / LANES].widen(index % LANES, reach);
+            self.len += LANES;
+            return;
+        }
+        while bits != 0 {
+            let from = bits.trailing_zeros() as usize % LANES;
+            bits &= bits - 1;
+            let (index, to) = (self.len / LANES, self.next_lane());
+            if to == 0 {
+                self.begin(index, &Chunk::NOWHERE);
+            }
+            let place = &mut self.chunks[index];
+            let fields = place.fields.as_mut().iter_mut();
+            for (lanes, field) in fields.zip(chunk.fields.as_ref()) {
+                lanes[to] = field[from];
+            }
+            place.numbers[to] = chunk.numbers[from];
+            self.reach[index / LANES].widen(index % LANES, reach);
+            self.len += 1;
+        }
+    }
+
+    /// Makes `chunk` the one at `index`, which is at most the end.
+    fn begin(&mut self, index: usize, chunk: &Chunk<T>) {
+        set_or_push(&mut self.chunks, index, chunk);
+        if index % LANES == 0 {
+            set_or_push(&mut self.reach, index / LANES, &Reach::NONE);
+        }
     }
 
     /// The chunks that hold lights.
@@ -163,10 +217,10 @@ impl<T: BatchShape> Extend<(u32, T)> for LightBatch<T> {
 }
 
 /// Puts `value` at `index`, which is at most the end.
-fn set_or_push<V>(values: &mut Vec<V>, index: usize, value: V) {
+fn set_or_push<V: Copy>(values: &mut Vec<V>, index: usize, value: &V) {
     if let Some(place) = values.get_mut(index) {
-        *place = value;
+        *place = *value;
     } else {
-        values.push(value);
+        values.push(*value);
     }
 }

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use fearless_simd::{Simd, SimdBase, SimdMask};
 
 use super::batch::Chunk;
+use super::exact::list_exactly;
 use super::filter::{filter, in_depth};
 use super::lanes::{LANES, Lanes, load, parts, splat, store};
 use super::shape::{BatchShape, InLanes, TileLanes};
@@ -19,6 +20,8 @@ pub(super) struct Scratch<T: BatchShape> {
     levels: usize,
     /// Chunk by chunk, what the lights share with all tiles of a row.
     rows: Vec<Row<T>>,
+    /// Whether lists are of the exact test.
+    pub exact: bool,
     pub counters: CullCounters,
 }
 
@@ -32,6 +35,7 @@ impl<T: BatchShape> Scratch<T> {
             blocks: Vec::new(),
             levels: 0,
             rows: Vec::new(),
+            exact: false,
             counters: CullCounters::default(),
         }
     }
@@ -59,6 +63,7 @@ impl<T: BatchShape> Scratch<T> {
             lists,
             origin: area.min,
             rows: &mut self.rows,
+            exact: self.exact,
             counters: &mut self.counters,
         };
         let blocks = &mut self.blocks[..self.levels];
@@ -76,6 +81,7 @@ struct Walk<'a, T: BatchShape> {
     /// The tile whose lists come first.
     origin: [usize; 2],
     rows: &'a mut Vec<Row<T>>,
+    exact: bool,
     counters: &'a mut CullCounters,
 }
 
@@ -152,9 +158,16 @@ impl<T: BatchShape> Walk<'_, T> {
                         self.counters.empty += 1;
                         continue;
                     }
-                    let tile = TileLanes::new(simd, across, down, *depths);
                     let start = self.lists.len();
-                    self.counters.tile_tests += list(simd, lights, rows, &tile, self.lists);
+                    if self.exact {
+                        let sides = [across, down, *depths];
+                        let tested = list_exactly(simd, lights, sides, self.lists);
+                        self.counters.tile_tests += tested.lights;
+                        self.counters.rejected_exactly += tested.rejected;
+                    } else {
+                        let tile = TileLanes::new(simd, across, down, *depths);
+                        self.counters.tile_tests += list(simd, lights, rows, &tile, self.lists);
+                    }
                     self.lists.end(first + interval, start);
                 }
             }

@@ -42,7 +42,7 @@ use crate::Error;
 pub struct Culler<T: BatchShape> {
     pub(super) level: Level,
     pub(super) blocks: bool,
-    scratch: Scratch<T>,
+    pub(super) scratch: Scratch<T>,
     #[cfg(feature = "rayon")]
     pub(super) workers: Vec<super::parallel::Worker<T>>,
 }
@@ -56,6 +56,8 @@ pub struct CullCounters {
     pub tile_tests: u64,
     /// Depth intervals, and whole blocks of tiles, without surfaces: nothing was tested against them.
     pub empty: u64,
+    /// Lights that pass the box test of a depth interval but not the exact test; none without it.
+    pub rejected_exactly: u64,
     /// Lights in all lists together.
     pub pairs: u64,
 }
@@ -71,16 +73,7 @@ impl<T: BatchShape> Culler<T> {
     ///
     /// On x86 16 is AVX-512, 8 is AVX2, and 4 is SSE; elsewhere there is but one width.
     pub fn with_lanes(lanes: usize) -> Self {
-        let widest = widest();
-        #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-        let _ = lanes;
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        let widest = match lanes {
-            ..8 => widest.as_sse2().map_or(widest, Level::Sse2),
-            8..16 => widest.as_avx2().map_or(widest, Level::Avx2),
-            16.. => widest,
-        };
-        Self::with_level(widest)
+        Self::with_level(at_most(lanes))
     }
 
     fn with_level(level: Level) -> Self {
@@ -102,8 +95,20 @@ impl<T: BatchShape> Culler<T> {
         }
     }
 
+    /// The same culler with the exact test after the box test: lists are of those lights for which
+    /// [`touches_exactly`](crate::TileTest::touches_exactly) is true.
+    ///
+    /// They are shorter, and take longer, a light at a time: worth it where each light of a list costs
+    /// more than that.
+    pub fn with_exact_test(mut self) -> Self {
+        self.scratch.exact = true;
+        self
+    }
+
     /// Puts into `lists` the lights of `batch` that may touch each depth interval of each tile: those
-    /// for which [`touches`](crate::TileTest::touches) is true of the tile's rectangle and the interval.
+    /// for which [`touches`](crate::TileTest::touches) is true of the tile's rectangle and the interval,
+    /// or [`touches_exactly`](crate::TileTest::touches_exactly) if it
+    /// [has the exact test](Self::with_exact_test).
     ///
     /// # Errors
     ///
@@ -143,8 +148,22 @@ pub(super) fn counted(
 }
 
 /// Without `std` there is no asking the processor: what the target is compiled for.
-fn widest() -> Level {
+pub(super) fn widest() -> Level {
     Level::try_detect().unwrap_or(Level::baseline())
+}
+
+/// The widest vectors of at most `lanes` lanes, where there is a choice.
+pub(super) fn at_most(lanes: usize) -> Level {
+    let widest = widest();
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    let _ = lanes;
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    let widest = match lanes {
+        ..8 => widest.as_sse2().map_or(widest, Level::Sse2),
+        8..16 => widest.as_avx2().map_or(widest, Level::Avx2),
+        16.. => widest,
+    };
+    widest
 }
 
 impl<T: BatchShape> Default for Culler<T> {

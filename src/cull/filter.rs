@@ -21,7 +21,11 @@ pub(super) fn in_depth<S: Simd>(simd: S, reach: &Reach, tile: &TileLanes<S>) -> 
 
 /// Which of a chunk's lights may touch `tile`, as bits.
 #[inline(always)]
-fn touching<S: Simd, T: BatchShape>(simd: S, chunk: &Chunk<T>, tile: &TileLanes<S>) -> u32 {
+pub(super) fn touching<S: Simd, T: BatchShape>(
+    simd: S,
+    chunk: &Chunk<T>,
+    tile: &TileLanes<S>,
+) -> u32 {
     let mut bits = 0;
     for part in 0..parts::<S>() {
         let row = T::row(simd, &chunk.fields, part, tile.down);

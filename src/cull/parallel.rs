@@ -41,10 +41,11 @@ impl<T: BatchShape + Send + Sync> Culler<T> {
         let areas = all.parts().flat_map(Area::parts);
         let count = self.fill_workers(areas, levels + 1);
         let workers = &mut self.workers[..count];
-        let level = self.level;
-        workers
-            .par_iter_mut()
-            .for_each(|worker| worker.cull(level, batch, tiles));
+        let (level, exact) = (self.level, self.scratch.exact);
+        workers.par_iter_mut().for_each(|worker| {
+            worker.scratch.exact = exact;
+            worker.cull(level, batch, tiles);
+        });
         lists.reset(all.size(), tiles.intervals() as usize);
         let mut counters = CullCounters::default();
         for worker in workers {
@@ -52,6 +53,7 @@ impl<T: BatchShape + Send + Sync> Culler<T> {
             counters.block_tests += worker.scratch.counters.block_tests;
             counters.tile_tests += worker.scratch.counters.tile_tests;
             counters.empty += worker.scratch.counters.empty;
+            counters.rejected_exactly += worker.scratch.counters.rejected_exactly;
         }
         counted(counters, tiles, lists)
     }

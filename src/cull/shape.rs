@@ -1,10 +1,12 @@
 use core::fmt::Debug;
 
-use fearless_simd::{Simd, SimdBase};
+use fearless_simd::{Select, Simd, SimdBase};
+use glam::{Mat3, Vec3};
 
 use super::lanes::{
     self, Ends, LANES, Lanes, apart, apart_at_depths, length_squared, load, scaled, shifted,
 };
+use crate::tile::Frustum;
 use crate::{CameraSphere, Stretch, TileTest, math};
 
 /// What a [`LightBatch`](super::LightBatch) can hold: [`Stretch`] and [`CameraSphere`].
@@ -31,8 +33,10 @@ pub trait InLanes: Copy {
     const NOWHERE: Self::Fields<Lanes>;
     const NO_ROW: Self::Row<Lanes>;
 
+    fn fields_of<T: Lane>(value: T) -> Self::Fields<T>;
     fn row_of<T: Lane>(value: T) -> Self::Row<T>;
     fn fields(&self) -> Self::Fields<f32>;
+    fn from_fields(fields: Self::Fields<f32>) -> Self;
 
     /// From the nearest to the farthest depth of a tile that the light touches, or a little more.
     fn reach(&self) -> [f32; 2];
@@ -52,6 +56,10 @@ pub trait InLanes: Copy {
         row: &Self::Row<S::f32s>,
         tile: &TileLanes<S>,
     ) -> S::mask32s;
+
+    /// Whether the light with these `fields`, which passes the box test, touches the tile with these
+    /// `sides` across, down and in depth.
+    fn meets(fields: &Self::Fields<f32>, sides: [[f32; 2]; 3]) -> bool;
 }
 
 /// A tile, the same in each lane.
@@ -86,6 +94,10 @@ impl InLanes for Stretch {
     };
     const NO_ROW: [Lanes; 4] = [[0.0; LANES]; 4];
 
+    fn fields_of<T: Lane>(value: T) -> [T; 10] {
+        [value; 10]
+    }
+
     fn row_of<T: Lane>(value: T) -> [T; 4] {
         [value; 4]
     }
@@ -100,12 +112,18 @@ impl InLanes for Stretch {
         [x.x, y.x, z.x, x.y, y.y, z.y, z.z, c.x, c.y, c.z]
     }
 
+    fn from_fields([m_11, m_12, m_13, m_21, m_22, m_23, m, x, y, z]: [f32; 10]) -> Self {
+        let matrix = Mat3::from_cols(
+            Vec3::new(m_11, m_21, 0.0),
+            Vec3::new(m_12, m_22, 0.0),
+            Vec3::new(m_13, m_23, m),
+        );
+        Self::from_parts(matrix, Vec3::new(x, y, z))
+    }
+
     fn reach(&self) -> [f32; 2] {
-        // The test rounds m z, and what is left of that and the centre: 4u of each is more.
-        const ROUNDING: f32 = 4.0 * math::UNIT_ROUNDOFF;
         let (m, depth) = (self.matrix().z_axis.z, self.center().z);
-        let reach = 1.0 + ROUNDING;
-        outward([depth - reach, depth + reach].map(|end| end / m))
+        outward([depth - UNIT_REACH, depth + UNIT_REACH].map(|end| end / m))
     }
 
     #[inline(always)]
@@ -138,6 +156,17 @@ impl InLanes for Stretch {
         );
         length_squared::<S>(x, y, z).simd_gt(S::f32s::splat(simd, 1.0))
     }
+
+    #[inline(always)]
+    fn meets(fields: &[f32; 10], sides: [[f32; 2]; 3]) -> bool {
+        let [m_11, m_12, m_13, m_21, m_22, m_23, m, x, y, z] = *fields;
+        let axes = [
+            Vec3::new(m_11, m_21, 0.0),
+            Vec3::new(m_12, m_22, 0.0),
+            Vec3::new(m_13, m_23, m),
+        ];
+        Frustum::new(axes, sides, Vec3::new(x, y, z), [1.0; 2]).meets_ball()
+    }
 }
 
 impl InLanes for CameraSphere {
@@ -149,6 +178,10 @@ impl InLanes for CameraSphere {
     const NOWHERE: [Lanes; 4] = [[0.0; LANES], [0.0; LANES], [0.0; LANES], [-1.0; LANES]];
     const NO_ROW: [Lanes; 0] = [];
 
+    fn fields_of<T: Lane>(value: T) -> [T; 4] {
+        [value; 4]
+    }
+
     fn row_of<T: Lane>(_: T) -> [T; 0] {
         []
     }
@@ -156,6 +189,10 @@ impl InLanes for CameraSphere {
     fn fields(&self) -> [f32; 4] {
         let c = self.center();
         [c.x, c.y, c.z, self.radius_squared()]
+    }
+
+    fn from_fields([x, y, z, radius_squared]: [f32; 4]) -> Self {
+        Self::from_parts(Vec3::new(x, y, z), radius_squared)
     }
 
     fn reach(&self) -> [f32; 2] {
@@ -182,15 +219,35 @@ impl InLanes for CameraSphere {
         let z = apart::<S>(load(simd, z, part), tile.depths);
         length_squared::<S>(x, y, z).simd_gt(load(simd, radius_squared, part))
     }
+
+    #[inline(always)]
+    fn meets(fields: &[f32; 4], sides: [[f32; 2]; 3]) -> bool {
+        let [x, y, z, radius_squared] = *fields;
+        Frustum::around_sphere(Vec3::new(x, y, z), radius_squared, sides).meets_ball()
+    }
 }
+
+/// How far the unit sphere reaches: the test rounds m z, and what is left of that and the centre, and 4u
+/// of each is more.
+pub(super) const UNIT_REACH: f32 = 1.0 + 4.0 * math::UNIT_ROUNDOFF;
+
+const SHARE: f32 = 8.0 * math::UNIT_ROUNDOFF;
 
 /// `range`, a few roundings wider; everything where it is not a range.
 fn outward([near, far]: [f32; 2]) -> [f32; 2] {
-    const SHARE: f32 = 8.0 * math::UNIT_ROUNDOFF;
     let (near, far) = (near - SHARE * near.abs(), far + SHARE * far.abs());
     if near <= far {
         [near, far]
     } else {
         [f32::NEG_INFINITY, f32::INFINITY]
     }
+}
+
+/// The same in lanes.
+#[inline(always)]
+pub(super) fn outward_of<S: Simd>(simd: S, [near, far]: Ends<S>) -> Ends<S> {
+    let (near, far) = (near - near.abs() * SHARE, far + far.abs() * SHARE);
+    let is_range = near.simd_le(far);
+    let [first, last] = lanes::splat(simd, [f32::NEG_INFINITY, f32::INFINITY]);
+    [is_range.select(near, first), is_range.select(far, last)]
 }

@@ -1,11 +1,14 @@
 //! A tile of the screen, and whether a light touches it.
 
 mod depth_interval;
+mod frustum;
 mod grid;
 mod rectangle;
 mod tile_test;
 
 pub use depth_interval::DepthInterval;
+#[cfg(feature = "cull")]
+pub(crate) use frustum::Frustum;
 pub use grid::{PixelRectangle, TileGrid};
 pub use rectangle::TileRectangle;
 pub use tile_test::TileTest;

@@ -1,5 +1,6 @@
 use glam::Vec3;
 
+use super::frustum::Frustum;
 use super::{DepthInterval, TileRectangle};
 use crate::{CameraSphere, HalfSpace, Stretch};
 
@@ -10,6 +11,15 @@ pub trait TileTest {
     ///
     /// Never false where it does reach one, and true for some tiles that it does not.
     fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool;
+
+    /// Whether the light may reach such a point, as nearly as it can be told: false of all that
+    /// [`touches`](Self::touches) is false of, and of more where there is an exact test.
+    ///
+    /// Never false where the light does reach a point of the tile. Takes several times as long; worth
+    /// it where what is done with each light of a list takes longer.
+    fn touches_exactly(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
+        self.touches(rectangle, depths)
+    }
 }
 
 impl TileTest for Stretch {
@@ -26,6 +36,35 @@ impl TileTest for Stretch {
         let high = across[1] + (down[1] + m.z_axis);
         box_reaches(low, high, depths, self.center(), 1.0)
     }
+
+    /// The box test, and then the distance from the centre of the unit sphere to the tile's image
+    /// itself, a frustum.
+    ///
+    /// ```
+    /// use stochastic_light_culling::{
+    ///     Camera, DepthInterval, Ellipsoid, Stretch, TileRectangle, TileTest,
+    ///     glam::{Mat3, Vec2, Vec3},
+    /// };
+    ///
+    /// // Beside a deep tile far off the axis, but in the box around it.
+    /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.5, 1.0, 0.1..100.0)?;
+    /// let center = Vec3::new(5.5, 0.0, -5.2);
+    /// let ellipsoid = Ellipsoid::new(center, Mat3::IDENTITY, Vec3::new(0.5, 1.0, 0.5))?;
+    /// let light = Stretch::new(&ellipsoid, &camera).expect("not empty");
+    /// let tile = TileRectangle::new(Vec2::new(0.5, 0.0), Vec2::new(0.6, 0.1))?;
+    /// let depths = DepthInterval::new(5.0, 10.0)?;
+    /// assert!(light.touches(&tile, &depths));
+    /// assert!(!light.touches_exactly(&tile, &depths));
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
+    #[inline]
+    fn touches_exactly(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
+        self.touches(rectangle, depths) && {
+            let m = self.matrix();
+            let axes = [m.x_axis, m.y_axis, m.z_axis];
+            Frustum::new(axes, sides(rectangle, depths), self.center(), [1.0; 2]).meets_ball()
+        }
+    }
 }
 
 impl TileTest for CameraSphere {
@@ -34,6 +73,15 @@ impl TileTest for CameraSphere {
     fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
         let (low, high) = (rectangle.min().extend(1.0), rectangle.max().extend(1.0));
         box_reaches(low, high, depths, self.center(), self.radius_squared())
+    }
+
+    /// The box test, and then the distance to the tile itself.
+    #[inline]
+    fn touches_exactly(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
+        self.touches(rectangle, depths) && {
+            let sides = sides(rectangle, depths);
+            Frustum::around_sphere(self.center(), self.radius_squared(), sides).meets_ball()
+        }
     }
 }
 
@@ -79,6 +127,17 @@ fn box_reaches(
         apart_squared.partial_cmp(&radius_squared),
         Some(core::cmp::Ordering::Greater)
     )
+}
+
+/// From the least to the greatest x/z, y/z and z.
+#[inline]
+fn sides(rectangle: &TileRectangle, depths: &DepthInterval) -> [[f32; 2]; 3] {
+    let (min, max) = (rectangle.min(), rectangle.max());
+    [
+        [min.x, max.x],
+        [min.y, max.y],
+        [depths.near(), depths.far()],
+    ]
 }
 
 /// The lesser and the greater of each component.

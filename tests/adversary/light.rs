@@ -5,7 +5,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use fastrand::Rng;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Conductor, ConstantLobe, Dielectric, Direction,
-    Ggx, GgxLobe, LambertLobe, MaskingShadowing, NoFresnel, Roulette, Schlick, Vpl, Xi, glam::Vec3,
+    Ggx, GgxLobe, LambertLobe, MaskingShadowing, NoFresnel, PhongLobe, Roulette, Schlick, Vpl, Xi,
+    glam::Vec3,
 };
 use twofloat::TwoFloat as Real;
 
@@ -37,7 +38,11 @@ impl Light {
                 albedo: up_to_one(rng, 1e-6) as f32,
             },
             1 => Brdf::Constant,
-            2..8 => Brdf::Anisotropic {
+            2 | 3 => Brdf::Phong {
+                albedo: up_to_one(rng, 1e-6) as f32,
+                exponent: exponent(rng),
+            },
+            4..9 => Brdf::Anisotropic {
                 roughness: two_roughnesses(rng),
                 tangent: direction(unit_vector(rng)),
                 fresnel: fresnel(rng),
@@ -90,8 +95,8 @@ impl Light {
     pub fn peak(&self) -> Exact {
         let (n, w) = (self.unit_normal(), self.unit_incoming());
         match self.brdf {
-            Brdf::Ggx { .. } | Brdf::Anisotropic { .. } => n * (n.dot(w) * 2.0) - w,
-            _ => n,
+            Brdf::Lambert { .. } | Brdf::Constant => n,
+            _ => n * (n.dot(w) * 2.0) - w,
         }
     }
 
@@ -128,6 +133,7 @@ impl Light {
         let width = match self.brdf {
             Brdf::Ggx { roughness, .. } => f64::from(roughness),
             Brdf::Anisotropic { roughness, .. } => f64::from(roughness[rng.usize(0..2)]),
+            Brdf::Phong { exponent, .. } => (1.0 / (2.0 + 2.0 * f64::from(exponent))).sqrt(),
             _ => 1.0,
         };
         let peak = self.peak();
@@ -176,7 +182,17 @@ impl Light {
             Brdf::Constant => Bound::Sphere(self.bound_of(ConstantLobe)),
             Brdf::Lambert { albedo } => {
                 let lobe = LambertLobe::new(albedo, self.normal).expect("in the domain");
-                Bound::Sphere(self.bound_of(lobe))
+                let light = Vpl::new(self.position, self.flux, lobe).expect("in the domain");
+                let (roulette, xi) = self.roulette();
+                Bound::Lambert {
+                    sphere: light.bound(&roulette, xi),
+                    tight: light.tight_bound(&roulette, xi),
+                }
+            }
+            Brdf::Phong { albedo, exponent } => {
+                let lobe = PhongLobe::new(albedo, exponent, self.normal, self.incoming)
+                    .expect("in the domain");
+                Bound::Phong(self.bound_of(lobe))
             }
             Brdf::Anisotropic {
                 roughness,
@@ -316,4 +332,15 @@ pub fn fresnel(rng: &mut Rng) -> Fresnel {
         3 => Fresnel::Schlick(0.0),
         _ => Fresnel::None,
     }
+}
+
+/// Any exponent of Phong's that is a multiple of 1/16, as the exact model needs it.
+fn exponent(rng: &mut Rng) -> f32 {
+    let exponent = match rng.u8(0..8) {
+        0 => 0.0,
+        1 => 1_048_576.0,
+        2 | 3 => 4.0 * rng.f64(),
+        _ => log_uniform(rng, 0.06, 1_048_576.0),
+    };
+    ((16.0 * exponent).round() / 16.0) as f32
 }

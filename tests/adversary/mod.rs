@@ -23,13 +23,28 @@ pub enum Bound {
         tight: Ellipsoid,
     },
     Anisotropic(Ellipsoid),
+    Phong(Ellipsoid),
+    Lambert {
+        sphere: Sphere,
+        tight: Ellipsoid,
+    },
     Sphere(Sphere),
 }
 
 impl Bound {
     /// The names of the bounds by which the light is not found to touch `tile`.
     pub fn that_lose(&self, tile: &Tile) -> Vec<&'static str> {
-        let touches = |test: &dyn TileTest| test.touches(&tile.rectangle, &tile.depths);
+        self.that_fail(tile, |test| test.touches(&tile.rectangle, &tile.depths))
+    }
+
+    /// Those by which it is not found by the exact test.
+    pub fn that_lose_exactly(&self, tile: &Tile) -> Vec<&'static str> {
+        self.that_fail(tile, |test| {
+            test.touches_exactly(&tile.rectangle, &tile.depths)
+        })
+    }
+
+    fn that_fail(&self, tile: &Tile, touches: impl Fn(&dyn TileTest) -> bool) -> Vec<&'static str> {
         let sphere = |sphere: Sphere| {
             CameraSphere::new(&sphere, &tile.camera).is_some_and(|test| touches(&test))
         };
@@ -39,6 +54,14 @@ impl Bound {
         let found = match *self {
             Self::Sphere(bound) => vec![("sphere", sphere(bound))],
             Self::Anisotropic(bound) => vec![("anisotropic ellipsoid", ellipsoid(bound))],
+            Self::Phong(bound) => vec![("ellipsoid of Phong's lobe", ellipsoid(bound))],
+            Self::Lambert {
+                sphere: bound,
+                tight,
+            } => vec![
+                ("sphere", sphere(bound)),
+                ("ellipsoid of Lambert's lobe", ellipsoid(tight)),
+            ],
             Self::Ggx { spheroid, tight } => vec![
                 ("spheroid", ellipsoid(spheroid.into())),
                 ("tight ellipsoid", ellipsoid(tight)),

@@ -5,8 +5,8 @@ use std::hint::black_box;
 use fastrand::Rng;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, DepthInterval, Dielectric,
-    Direction, Ellipsoid, Ggx, GgxLobe, Interleave, LambertLobe, NoFresnel, PixelRectangle,
-    Roulette, Schlick, Sphere, TileGrid, TileRectangle, Vpl, Xi,
+    Direction, Ellipsoid, Ggx, GgxLobe, Interleave, LambertLobe, NoFresnel, PhongLobe,
+    PixelRectangle, Roulette, Schlick, Sphere, TileGrid, TileRectangle, Vpl, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
 
@@ -112,6 +112,19 @@ fn sizes(bits: &mut Bits) {
 fn others(bits: &mut Bits, cameras: &[Camera]) {
     if let Some([normal, _]) = directions(bits) {
         if let Ok(lobe) = LambertLobe::new(bits.number(), normal) {
+            probe::light(lobe, cameras);
+        }
+    }
+    if let Some([normal, incoming]) = directions(bits) {
+        let [albedo, exponent] = [(); 2].map(|()| bits.number());
+        for lobe in [
+            PhongLobe::new(albedo, exponent, normal, incoming),
+            PhongLobe::about(albedo, exponent, normal),
+        ]
+        .into_iter()
+        .flatten()
+        {
+            probe::direction(lobe.axis());
             probe::light(lobe, cameras);
         }
     }
@@ -234,7 +247,7 @@ pub fn light_in_domain(bits: &mut Bits) {
     let mut rng = Rng::with_seed(bits.seed());
     for _ in 0..8 {
         if let Some(tile) = Tile::draw(&mut rng, &light) {
-            let lost = bound.that_lose(&tile);
+            let lost = bound.that_lose_exactly(&tile);
             assert!(lost.is_empty(), "{lost:?} of {light:?} in {tile:?}");
         }
     }

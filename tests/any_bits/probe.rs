@@ -2,8 +2,8 @@
 
 use stochastic_light_culling::{
     AnisotropicGgxLobe, Bound, Bounded, Camera, CameraSphere, DepthInterval, Direction, Ellipsoid,
-    Fresnel, GgxLobe, Lobe, MaskingShadowing, PixelRectangle, Roulette, Sphere, Spheroid, Stretch,
-    TileRectangle, TileTest, Vpl, Xi,
+    Fresnel, GgxLobe, Lobe, MaskingShadowing, PixelRectangle, Proxy, Roulette, Sphere, Spheroid,
+    Stretch, TileRectangle, TileTest, Vpl, Xi,
     glam::{Mat3, Vec2, Vec3},
 };
 
@@ -74,6 +74,11 @@ pub fn ellipsoid(ellipsoid: &Ellipsoid, cameras: &[Camera]) {
     vector(ellipsoid.center());
     matrix(ellipsoid.rotation());
     vector(ellipsoid.semi_axes());
+    for proxy in [Proxy::Icosahedron, Proxy::Icosphere] {
+        proxy
+            .vertices(ellipsoid)
+            .for_each(|vertex| assert!(vertex.is_finite(), "{vertex}"));
+    }
     for camera in cameras {
         if let Some(test) = Stretch::new(ellipsoid, camera) {
             matrix(test.matrix());
@@ -98,7 +103,7 @@ fn touching(test: &impl TileTest, camera: &Camera) {
     for rectangle in rectangles.into_iter().flatten() {
         for (near, far) in depths {
             let depths = DepthInterval::new(near, far).expect("in order");
-            std::hint::black_box(test.touches(&rectangle, &depths));
+            std::hint::black_box(test.touches_exactly(&rectangle, &depths));
         }
     }
 }

@@ -182,12 +182,30 @@ pub fn laid_on(lit: &Lit, brdf: Brdf) -> Brdf {
     }
 }
 
+/// Phong's exponent: over decades, near 2, where the bound changes its form, and both ends.
+pub fn exponent() -> impl Strategy<Value = f32> {
+    let near_two = (log_uniform(1e-7, 1.0), any::<bool>())
+        .prop_map(|(gap, above)| if above { 2.0 + gap } else { 2.0 - gap });
+    let exponent = prop_oneof![
+        3 => log_uniform(1e-3, 1_048_576.0),
+        2 => 0.0..2.0,
+        2 => near_two,
+        1 => log_uniform(1e-40, 1e-3),
+        1 => Just(2.0),
+        1 => Just(0.0),
+        1 => Just(1_048_576.0),
+    ];
+    exponent.prop_map(|x: f64| x as f32)
+}
+
 pub fn brdf() -> impl Strategy<Value = Brdf> {
-    let albedo = prop_oneof![3 => 0.001..=1.0_f32, 1 => Just(1.0_f32)];
+    let albedo = || prop_oneof![3 => 0.001..=1.0_f32, 1 => Just(1.0_f32)];
+    let phong = (albedo(), exponent());
     prop_oneof![
         4 => ggx_brdf(),
         4 => anisotropic_brdf(),
-        1 => albedo.prop_map(|albedo| Brdf::Lambert { albedo }),
+        2 => albedo().prop_map(|albedo| Brdf::Lambert { albedo }),
+        4 => phong.prop_map(|(albedo, exponent)| Brdf::Phong { albedo, exponent }),
         1 => Just(Brdf::Constant),
     ]
 }

@@ -71,7 +71,15 @@ pub fn value(brdf: Brdf, normal: Exact, incoming: Exact, outgoing: Exact) -> Rea
         Brdf::Constant => Real::from(0.25) / PI,
         _ if mu_o <= zero => zero,
         Brdf::Lambert { albedo } => mu_o * f64::from(albedo) / PI,
-        Brdf::Ggx { .. } | Brdf::Anisotropic { .. } if mu <= zero => zero,
+        _ if mu <= zero => zero,
+        Brdf::Phong { albedo, exponent } => {
+            let cosine = (normal * (mu * 2.0) - incoming).dot(outgoing);
+            if cosine <= zero {
+                return zero;
+            }
+            let peak = (Real::from(f64::from(exponent)) + 1.0) * f64::from(albedo) / (PI * 2.0);
+            peak * power(cosine, exponent)
+        }
         Brdf::Ggx {
             roughness,
             fresnel,
@@ -112,6 +120,14 @@ pub fn value(brdf: Brdf, normal: Exact, incoming: Exact, outgoing: Exact) -> Rea
             reflectance(fresnel, incoming.dot(half)) * ndf * g2
         }
     }
+}
+
+/// cosⁿ for an exponent n that is a multiple of 1/16: by roots and products, since logarithms lose digits.
+fn power(cosine: Real, exponent: f32) -> Real {
+    let sixteenths = 16.0 * exponent;
+    assert_eq!(sixteenths, sixteenths.trunc(), "not a multiple of 1/16");
+    let root = cosine.sqrt().sqrt().sqrt().sqrt();
+    root.powi(sixteenths as i32)
 }
 
 /// G2/(4μ) for μ, μ_o and the roots of both.

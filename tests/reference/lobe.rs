@@ -29,6 +29,10 @@ pub enum Brdf {
     Lambert {
         albedo: f32,
     },
+    Phong {
+        albedo: f32,
+        exponent: f32,
+    },
     /// No BRDF, but the intensity of a point light: 1/(4π) everywhere.
     Constant,
 }
@@ -76,7 +80,14 @@ impl Surface {
             Brdf::Constant => 1.0 / (4.0 * PI),
             _ if mu_o <= 0.0 => 0.0,
             Brdf::Lambert { albedo } => f64::from(albedo) / PI * mu_o,
-            Brdf::Ggx { .. } | Brdf::Anisotropic { .. } if mu <= 0.0 => 0.0,
+            _ if mu <= 0.0 => 0.0,
+            Brdf::Phong { albedo, exponent } => {
+                let [albedo, exponent] = [albedo, exponent].map(f64::from);
+                match self.mirror().dot(outgoing) {
+                    cosine if cosine <= 0.0 => 0.0,
+                    cosine => albedo * (exponent + 1.0) / (2.0 * PI) * cosine.powf(exponent),
+                }
+            }
             Brdf::Ggx {
                 roughness,
                 fresnel,

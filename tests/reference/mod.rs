@@ -9,6 +9,7 @@
 pub mod camera;
 pub mod exact;
 pub mod fresnel;
+pub mod frustum;
 pub mod given;
 pub mod lobe;
 pub mod shape;
@@ -17,6 +18,7 @@ pub mod vector;
 
 pub use camera::View;
 pub use fresnel::Fresnel;
+pub use frustum::Frustum;
 pub use given::GivenFresnel;
 pub use lobe::{
     Brdf, Masking, Surface, SurfaceFrame, anisotropic_g2, anisotropic_ndf, ggx_ndf, smith_g1,

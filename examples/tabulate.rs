@@ -1,0 +1,77 @@
+//! Makes the table of the tight bound, and proves that its ellipsoids enclose.
+//!
+//! ```text
+//! cargo run --release --example tabulate            # writes src/bound/table.bin
+//! cargo run --release --example tabulate -- --prove # cell by cell, the one that is there
+//! ```
+
+#[path = "../tests/certificate/mod.rs"]
+mod certificate;
+mod command;
+#[path = "tabulate/make.rs"]
+mod make;
+#[path = "output/progress.rs"]
+mod progress;
+#[path = "../tests/reference/mod.rs"]
+mod reference;
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clap::Parser;
+use rayon::prelude::*;
+
+use certificate::Cell;
+
+/// The table of smallest ellipsoids behind the tight bound.
+#[derive(Parser)]
+struct Arguments {
+    /// Prove the table that is there, instead of making it.
+    #[arg(long)]
+    prove: bool,
+    /// Prove each n-th cell only.
+    #[arg(long, default_value_t = 1)]
+    every: usize,
+    /// Boxes after which a cell is given up.
+    #[arg(long, default_value_t = 100_000_000)]
+    boxes: usize,
+}
+
+fn main() -> ExitCode {
+    command::run(|arguments: Arguments| {
+        if arguments.prove {
+            prove(&arguments)
+        } else {
+            let bytes: Vec<u8> = make::table().iter().flat_map(|x| x.to_le_bytes()).collect();
+            let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/bound/table.bin");
+            std::fs::write(path, bytes).map_err(|error| format!("{path}: {error}"))
+        }
+    })
+}
+
+fn prove(arguments: &Arguments) -> Result<(), String> {
+    let cells: Vec<Cell> = Cell::all().into_iter().step_by(arguments.every).collect();
+    let (count, start) = (cells.len(), Instant::now());
+    let bar = progress::progress("cells", count);
+    let results: Vec<_> = cells
+        .into_par_iter()
+        .map(|cell| {
+            let result = certificate::prove(&cell, arguments.boxes);
+            bar.inc(1);
+            if let Err(doubt) = result {
+                bar.suspend(|| eprintln!("in doubt: {doubt:?}"));
+            }
+            result
+        })
+        .collect();
+    bar.finish_and_clear();
+    let boxes: usize = results.iter().filter_map(|r| r.as_ref().ok()).sum();
+    let doubts = results.iter().filter(|r| r.is_err()).count();
+    let seconds = start.elapsed().as_secs();
+    println!("{count} cells, {doubts} in doubt, {boxes} boxes, {seconds} s");
+    if doubts == 0 {
+        Ok(())
+    } else {
+        Err(format!("{doubts} cells are in doubt"))
+    }
+}

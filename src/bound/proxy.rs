@@ -1,0 +1,208 @@
+//! Polyhedra around an ellipsoid, for a rasteriser.
+//!
+//! A polyhedron that contains the unit ball becomes one that contains the ellipsoid by the same linear map,
+//! and faces that touch stay faces that touch. Around the ball are the regular icosahedron whose faces touch
+//! it, and what is left of it when it is cut closer at its twelve vertices: each face is divided at the
+//! middles of its edges, where its middle quarter touches the ball already, and the vertices are drawn in
+//! until the other three quarters touch it too.
+
+use glam::Vec3;
+
+use super::Ellipsoid;
+use crate::math;
+use crate::wide::{self, Vector};
+
+/// A closed triangle mesh that contains an [`Ellipsoid`], each triangle touching it: the geometry by which
+/// lights are splatted [Dachsbacher & Stamminger 2006].
+///
+/// Of all polyhedra with so many faces around a ball none has less than 0.973 (20) and 0.990 (80) of these
+/// volumes [Fejes Tóth 1964, *Regular Figures*].
+///
+/// ```
+/// use stochastic_light_culling::{Direction, Ellipsoid, LambertLobe, Proxy, glam::Vec3};
+///
+/// let light = LambertLobe::new(0.8, Direction::Y)?.tight_bound();
+/// let positions: Vec<Vec3> = Proxy::Icosphere.vertices(&light).collect();
+/// let indices: &[u16] = Proxy::Icosphere.triangles().as_flattened();
+/// assert_eq!((positions.len(), indices.len()), (42, 3 * 80));
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Proxy {
+    /// 20 triangles with 12 vertices: 1.207 times the ellipsoid's volume.
+    Icosahedron,
+    /// 80 triangles with 42 vertices: 1.049 times the ellipsoid's volume.
+    Icosphere,
+}
+
+impl Proxy {
+    /// The vertices of each triangle, as indices of [`vertices`](Self::vertices): counter-clockwise as seen
+    /// from outside, in a right-handed space.
+    pub fn triangles(self) -> &'static [[u16; 3]] {
+        match self {
+            Self::Icosahedron => &FACES,
+            Self::Icosphere => &SUBDIVIDED.triangles,
+        }
+    }
+
+    /// The vertices of the mesh around `ellipsoid`, rounded outward: 12 or 42 points in world space, in the
+    /// unit of the ellipsoid.
+    ///
+    /// Far from the origin, where neighbouring `f32` numbers lie farther apart, the mesh is larger by that.
+    /// All are the centre if the ellipsoid is empty; where they would leave the range of `f32`, its largest
+    /// numbers stand for them. Never NaN.
+    pub fn vertices(
+        self,
+        ellipsoid: &Ellipsoid,
+    ) -> impl ExactSizeIterator<Item = Vec3> + Clone + use<> {
+        let vertices: &[Vector] = match self {
+            Self::Icosahedron => &VERTICES,
+            Self::Icosphere => &SUBDIVIDED.vertices,
+        };
+        let frame = Frame::around(ellipsoid);
+        vertices.iter().map(move |vertex| frame.to_world(*vertex))
+    }
+}
+
+/// The map from around the unit ball to around the ellipsoid.
+#[derive(Clone, Copy)]
+struct Frame {
+    center: Vector,
+    columns: [Vector; 3],
+}
+
+impl Frame {
+    /// Rounding moves a vertex by √3u of its largest component at most, and no point of a triangle by more.
+    /// So the mesh is put around an ellipsoid that holds a ball of that radius d besides: that of the squared
+    /// semi-axes (1+t)aᵢ² + (1+1/t)d², for any t > 0.
+    fn around(ellipsoid: &Ellipsoid) -> Self {
+        let wide = |v: Vec3| v.to_array().map(f64::from);
+        let [light, offset] = ellipsoid.center_parts().map(wide);
+        let most = f64::from(f32::MAX);
+        let center = wide::sum([(1.0, light), (1.0, offset)]).map(|x| x.clamp(-most, most));
+        let rotation = ellipsoid.rotation();
+        let axes = [rotation.x_axis, rotation.y_axis, rotation.z_axis].map(wide);
+        let semi_axes = wide(ellipsoid.semi_axes().min(Vec3::MAX));
+
+        let [shortest, longest] =
+            [f64::min, f64::max].map(|pick| semi_axes.into_iter().reduce(pick).unwrap_or_default());
+        let [x, y, z] = center.map(f64::abs);
+        let farthest = x.max(y).max(z) + 2.0 * longest;
+        let subnormal = f64::from(f32::from_bits(2));
+        let moved = 2.0 * f64::from(math::UNIT_ROUNDOFF) * farthest + subnormal;
+        let share = (moved / shortest).min(1.0);
+        // A mirrored frame would turn the triangles inside out; an ellipsoid is its own mirror image.
+        let side = wide::dot(wide::cross(axes[0], axes[1]), axes[2]).signum();
+        let columns = [(side, 0), (1.0, 1), (1.0, 2)].map(|(side, i)| {
+            let a = semi_axes[i];
+            let enlarged = (1.0 + share) * a * a + (1.0 + 1.0 / share) * moved * moved;
+            let length = if shortest > 0.0 {
+                math::sqrt_of_wide(enlarged)
+            } else {
+                0.0
+            };
+            wide::sum([(side * length, axes[i])])
+        });
+        Self { center, columns }
+    }
+
+    fn to_world(self, [x, y, z]: Vector) -> Vec3 {
+        let [a, b, c] = self.columns;
+        let point = wide::sum([(1.0, self.center), (x, a), (y, b), (z, c)]);
+        Vec3::from_array(point.map(|x| (x as f32).clamp(f32::MIN, f32::MAX)))
+    }
+}
+
+/// The vertices of the icosahedron around the unit ball are at 0, ±A and ±φA, in cyclic order, with the
+/// golden ratio φ: A = √3/φ², here rounded up.
+const A: f64 = 0.661_584_538_249_608;
+const B: f64 = 1.070_466_269_319_271;
+
+const VERTICES: [Vector; 12] = [
+    [0.0, -A, -B],
+    [-A, -B, 0.0],
+    [-B, 0.0, -A],
+    [0.0, -A, B],
+    [-A, B, 0.0],
+    [B, 0.0, -A],
+    [0.0, A, -B],
+    [A, -B, 0.0],
+    [-B, 0.0, A],
+    [0.0, A, B],
+    [A, B, 0.0],
+    [B, 0.0, A],
+];
+
+const FACES: [[u16; 3]; 20] = [
+    [0, 1, 2],
+    [0, 7, 1],
+    [0, 2, 6],
+    [0, 6, 5],
+    [0, 5, 7],
+    [1, 8, 2],
+    [1, 7, 3],
+    [1, 3, 8],
+    [2, 4, 6],
+    [2, 8, 4],
+    [3, 7, 11],
+    [3, 9, 8],
+    [3, 11, 9],
+    [4, 10, 6],
+    [4, 8, 9],
+    [4, 9, 10],
+    [5, 6, 10],
+    [5, 11, 7],
+    [5, 10, 11],
+    [9, 11, 10],
+];
+
+struct Subdivided {
+    vertices: [Vector; 42],
+    triangles: [[u16; 3]; 80],
+}
+
+static SUBDIVIDED: Subdivided = subdivided();
+
+const fn subdivided() -> Subdivided {
+    /// How far the vertices are drawn in for the corners to touch the unit ball, rounded up.
+    const DRAWN_IN: f64 = 0.825_664_548_662_088;
+    let mut vertices = [[0.0; 3]; 42];
+    let mut triangles = [[0; 3]; 80];
+    let mut i = 0;
+    while i < 12 {
+        let [x, y, z] = VERTICES[i];
+        vertices[i] = [DRAWN_IN * x, DRAWN_IN * y, DRAWN_IN * z];
+        i += 1;
+    }
+    // The vertex in the middle of each edge, from either end.
+    let mut middles = [[0_u16; 12]; 12];
+    let mut next = 12;
+    let mut face = 0;
+    while face < 20 {
+        let corners = FACES[face];
+        let mut between = [0_u16; 3];
+        let mut side = 0;
+        while side < 3 {
+            let (start, end) = (corners[side] as usize, corners[(side + 1) % 3] as usize);
+            if middles[start][end] == 0 {
+                let ([a, b, c], [x, y, z]) = (VERTICES[start], VERTICES[end]);
+                vertices[next as usize] = [0.5 * (a + x), 0.5 * (b + y), 0.5 * (c + z)];
+                middles[start][end] = next;
+                middles[end][start] = next;
+                next += 1;
+            }
+            between[side] = middles[start][end];
+            side += 1;
+        }
+        let ([a, b, c], [ab, bc, ca]) = (corners, between);
+        triangles[4 * face] = [a, ab, ca];
+        triangles[4 * face + 1] = [b, bc, ab];
+        triangles[4 * face + 2] = [c, ca, bc];
+        triangles[4 * face + 3] = [ab, bc, ca];
+        face += 1;
+    }
+    Subdivided {
+        vertices,
+        triangles,
+    }
+}

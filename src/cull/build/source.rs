@@ -1,0 +1,136 @@
+//! What shapes are made of: lights, and bounds with the places that they are put in.
+
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
+use glam::Vec3;
+
+use super::vector::round_up;
+use super::view::{Seen, View};
+use crate::cull::batch::Chunk;
+use crate::cull::lanes::{LANES, Lanes, load, parts, splat, store};
+use crate::cull::shape::{InLanes, Lane};
+use crate::{BatchShape, Roulette};
+
+/// Something that shapes are made of, sixteen at a time.
+pub trait Source: Copy {
+    type Light;
+    /// What a light is given besides in a frame.
+    type Given: Copy;
+    type Shape: BatchShape;
+    /// The numbers of a light, each of type `T`.
+    type Numbers<T: Lane>: Lane + AsRef<[T]> + AsMut<[T]>;
+    /// What a light has besides numbers.
+    type Rest: Copy;
+
+    fn numbers_of<T: Lane>(value: T) -> Self::Numbers<T>;
+    fn numbers(light: &Self::Light, given: Self::Given) -> Self::Numbers<f32>;
+    fn rest(light: &Self::Light) -> Self::Rest;
+
+    /// Whether a light may reach somewhere. That is but a guess, which spares the work on those that do
+    /// not.
+    fn may_reach(light: &Self::Light, given: Self::Given) -> bool;
+
+    /// The shapes of lights, and which of them are shapes of lights that reach somewhere.
+    fn shapes<S: Simd>(
+        simd: S,
+        numbers: &Self::Numbers<S::f32s>,
+        rest: &[Self::Rest],
+        frame: &Frame,
+    ) -> (OfShape<S, Self::Shape>, S::mask32s);
+}
+
+pub(super) type OfShape<S, T> = Seen<S, <T as InLanes>::Fields<<S as Simd>::f32s>>;
+
+/// What all lights of a frame share.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    pub(super) roulette: Roulette,
+    pub(super) view: View,
+}
+
+/// Sixteen lights, and the shapes that are made of them.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Lights<T: Source> {
+    numbers: T::Numbers<Lanes>,
+    rest: [T::Rest; LANES],
+    pub chunk: Chunk<T::Shape>,
+    /// Those that have a shape, as bits, and the depths that these reach.
+    pub shaped: u32,
+    pub reach: [f32; 2],
+}
+
+impl<T: Source> Lights<T> {
+    /// `light` in all lanes.
+    pub fn splat(light: &T::Light, given: T::Given) -> Self {
+        let mut numbers = T::numbers_of([0.0; LANES]);
+        let of_light = T::numbers(light, given);
+        for (lanes, number) in numbers.as_mut().iter_mut().zip(of_light.as_ref()) {
+            *lanes = [*number; LANES];
+        }
+        Self {
+            numbers,
+            rest: [T::rest(light); LANES],
+            chunk: Chunk::NOWHERE,
+            shaped: 0,
+            reach: [0.0; 2],
+        }
+    }
+
+    #[inline]
+    pub fn set(&mut self, lane: usize, name: u32, light: &T::Light, given: T::Given) {
+        let numbers = self.numbers.as_mut().iter_mut();
+        for (lanes, number) in numbers.zip(T::numbers(light, given).as_ref()) {
+            lanes[lane] = *number;
+        }
+        self.rest[lane] = T::rest(light);
+        self.chunk.numbers[lane] = name;
+    }
+
+    /// Makes the shapes; only those that bits of `wanted` tell have any.
+    #[inline(always)]
+    pub fn shape<S: Simd>(&mut self, simd: S, wanted: u32, frame: &Frame) {
+        let zero = S::f32s::splat(simd, 0.0);
+        let [mut nearest, mut farthest] = splat(simd, [f32::INFINITY, f32::NEG_INFINITY]);
+        self.shaped = 0;
+        for part in 0..parts::<S>() {
+            let mut numbers = T::numbers_of(zero);
+            for (vector, lanes) in numbers.as_mut().iter_mut().zip(self.numbers.as_ref()) {
+                *vector = load(simd, lanes, part);
+            }
+            let first = part * S::f32s::LEN;
+            let rest = &self.rest[first..][..S::f32s::LEN];
+            let (seen, somewhere) = T::shapes(simd, &numbers, rest, frame);
+            for (lanes, vector) in self
+                .chunk
+                .fields
+                .as_mut()
+                .iter_mut()
+                .zip(seen.fields.as_ref())
+            {
+                store::<S>(lanes, part, *vector);
+            }
+
+            let of_part = u64::from(wanted >> first) & ((1 << S::f32s::LEN) - 1);
+            let shaped = somewhere & S::mask32s::from_bitmask(simd, of_part);
+            let [near, far] = seen.reach;
+            nearest = shaped.select(nearest.min(near), nearest);
+            farthest = shaped.select(farthest.max(far), farthest);
+            self.shaped |= (shaped.to_bitmask() as u32) << first;
+        }
+        self.reach = [nearest.reduce_min(), farthest.reduce_max()];
+    }
+}
+
+/// [`Roulette::scale`].
+#[inline(always)]
+pub(super) fn scale<S: Simd>(simd: S, roulette: &Roulette, flux: S::f32s, xi: S::f32s) -> S::f32s {
+    let zero = S::f32s::splat(simd, 0.0);
+    let radius = flux.sqrt() / (xi.sqrt() * roulette.delta_root());
+    let normal = round_up::<S>(radius, 5)
+        .max(f32::MIN_POSITIVE)
+        .min(f32::MAX);
+    flux.simd_gt(zero).select(normal, zero)
+}
+
+/// The position and the scale that a bound is placed with.
+pub(super) type Place = (Vec3, f32);

@@ -1,0 +1,154 @@
+//! Diffuse lights, point lights, and spheres.
+
+use fearless_simd::{Simd, SimdBase, SimdFloat};
+
+use super::source::{Frame, OfShape, Place, Source, scale};
+use super::vector::{Vectors, round_up};
+use super::view::Spheres;
+use crate::cull::shape::Lane;
+use crate::{Bound, Bounded, CameraSphere, ConstantLobe, LambertLobe, Sphere, Vpl, Xi};
+
+impl Source for LambertLobe {
+    type Light = Vpl<Self>;
+    type Given = Xi;
+    type Shape = CameraSphere;
+    /// The position, Φ, ξ, n and ρ.
+    type Numbers<T: Lane> = [T; 9];
+    type Rest = ();
+
+    fn numbers_of<T: Lane>(value: T) -> [T; 9] {
+        [value; 9]
+    }
+
+    #[inline]
+    fn numbers(light: &Self::Light, xi: Xi) -> [f32; 9] {
+        let (p, n) = (light.position(), light.lobe().normal());
+        let albedo = light.lobe().albedo();
+        [p.x, p.y, p.z, light.flux(), xi.get(), n.x, n.y, n.z, albedo]
+    }
+
+    #[inline]
+    fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn may_reach(light: &Self::Light, _: Xi) -> bool {
+        light.flux() > 0.0 && light.lobe().albedo() > 0.0
+    }
+
+    #[inline(always)]
+    fn shapes<S: Simd>(
+        simd: S,
+        numbers: &[S::f32s; 9],
+        _: &[()],
+        frame: &Frame,
+    ) -> (OfShape<S, CameraSphere>, S::mask32s) {
+        let [p_x, p_y, p_z, flux, xi, n_x, n_y, n_z, albedo] = *numbers;
+        let reach = albedo.sqrt() * Self::ROOT_OF_ONE_OVER_PI;
+        let unit = Spheres {
+            center: Vectors::<S>::new(n_x, n_y, n_z) * (reach * Self::CENTER),
+            radius: round_up::<S>(reach * Self::RADIUS, 16),
+        };
+        let scale = scale(simd, &frame.roulette, flux, xi);
+        placed_spheres(simd, unit, Vectors::new(p_x, p_y, p_z), scale, frame)
+    }
+}
+
+impl Source for ConstantLobe {
+    type Light = Vpl<Self>;
+    type Given = Xi;
+    type Shape = CameraSphere;
+    /// The position, Φ and ξ.
+    type Numbers<T: Lane> = [T; 5];
+    type Rest = ();
+
+    fn numbers_of<T: Lane>(value: T) -> [T; 5] {
+        [value; 5]
+    }
+
+    #[inline]
+    fn numbers(light: &Self::Light, xi: Xi) -> [f32; 5] {
+        let p = light.position();
+        [p.x, p.y, p.z, light.flux(), xi.get()]
+    }
+
+    #[inline]
+    fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn may_reach(light: &Self::Light, _: Xi) -> bool {
+        light.flux() > 0.0
+    }
+
+    #[inline(always)]
+    fn shapes<S: Simd>(
+        simd: S,
+        numbers: &[S::f32s; 5],
+        _: &[()],
+        frame: &Frame,
+    ) -> (OfShape<S, CameraSphere>, S::mask32s) {
+        let [p_x, p_y, p_z, flux, xi] = *numbers;
+        let bound = Self.unit_bound();
+        let zero = S::f32s::splat(simd, 0.0);
+        let unit = Spheres {
+            center: Vectors::new(zero, zero, zero),
+            radius: S::f32s::splat(simd, bound.radius()),
+        };
+        let scale = scale(simd, &frame.roulette, flux, xi);
+        placed_spheres(simd, unit, Vectors::new(p_x, p_y, p_z), scale, frame)
+    }
+}
+
+impl Source for Sphere {
+    type Light = Self;
+    type Given = Place;
+    type Shape = CameraSphere;
+    /// The centre, the radius, the position and the scale.
+    type Numbers<T: Lane> = [T; 8];
+    type Rest = ();
+
+    fn numbers_of<T: Lane>(value: T) -> [T; 8] {
+        [value; 8]
+    }
+
+    #[inline]
+    fn numbers(sphere: &Self, (p, scale): Place) -> [f32; 8] {
+        let c = sphere.center();
+        [c.x, c.y, c.z, sphere.radius(), p.x, p.y, p.z, scale]
+    }
+
+    #[inline]
+    fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn may_reach(light: &Self, (_, scale): Place) -> bool {
+        !light.is_empty() && scale > 0.0
+    }
+
+    #[inline(always)]
+    fn shapes<S: Simd>(
+        simd: S,
+        numbers: &[S::f32s; 8],
+        _: &[()],
+        frame: &Frame,
+    ) -> (OfShape<S, CameraSphere>, S::mask32s) {
+        let [x, y, z, radius, p_x, p_y, p_z, scale] = *numbers;
+        let center = Vectors::new(x, y, z);
+        let unit = Spheres { center, radius };
+        placed_spheres(simd, unit, Vectors::new(p_x, p_y, p_z), scale, frame)
+    }
+}
+
+/// What is left of spheres around the origin: they in place and before the camera.
+#[inline(always)]
+fn placed_spheres<S: Simd>(
+    simd: S,
+    unit: Spheres<S>,
+    position: Vectors<S>,
+    scale: S::f32s,
+    frame: &Frame,
+) -> (OfShape<S, CameraSphere>, S::mask32s) {
+    let zero = S::f32s::splat(simd, 0.0);
+    let somewhere = unit.radius.simd_gt(zero) & scale.simd_gt(zero);
+    let placed = unit.placed(simd, position, scale);
+    (placed.before(simd, &frame.view), somewhere)
+}

@@ -1,0 +1,192 @@
+//! GGX lights, isotropic, with the paper's spheroid; and spheroids.
+
+use core::f32::consts::FRAC_1_PI;
+
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
+
+use super::place::Spheroids;
+use super::source::{Frame, OfShape, Place, Source, scale};
+use super::vector::{Vectors, Wide, dot, length_of_cross, round_up};
+use crate::bound::AXIS_TILT_RADIANS;
+use crate::cull::lanes::LANES;
+use crate::cull::shape::Lane;
+use crate::{Bound, Fresnel, GgxLobe, MaskingShadowing, Spheroid, Stretch, Vpl, Xi};
+
+impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
+    type Light = Vpl<Self>;
+    type Given = Xi;
+    type Shape = Stretch;
+    /// The position, Φ, ξ, n, ω_i, μ, √(kμ² + α²) and α.
+    type Numbers<T: Lane> = [T; 14];
+    type Rest = F;
+
+    fn numbers_of<T: Lane>(value: T) -> [T; 14] {
+        [value; 14]
+    }
+
+    #[inline]
+    fn numbers(light: &Self::Light, xi: Xi) -> [f32; 14] {
+        let (p, lobe) = (light.position(), light.lobe());
+        let (n, w) = (lobe.normal(), lobe.incoming());
+        [
+            p.x,
+            p.y,
+            p.z,
+            light.flux(),
+            xi.get(),
+            n.x,
+            n.y,
+            n.z,
+            w.x,
+            w.y,
+            w.z,
+            lobe.incident_cosine(),
+            lobe.incident_root(),
+            lobe.ggx().roughness(),
+        ]
+    }
+
+    #[inline]
+    fn rest(light: &Self::Light) -> F {
+        *light.lobe().fresnel()
+    }
+
+    #[inline]
+    fn may_reach(light: &Self::Light, _: Xi) -> bool {
+        light.flux() > 0.0 && light.lobe().incident_cosine() > 0.0
+    }
+
+    #[inline(always)]
+    fn shapes<S: Simd>(
+        simd: S,
+        numbers: &[S::f32s; 14],
+        fresnels: &[F],
+        frame: &Frame,
+    ) -> (OfShape<S, Stretch>, S::mask32s) {
+        let [p_x, p_y, p_z, flux, xi, numbers @ ..] = *numbers;
+        let [n_x, n_y, n_z, w_x, w_y, w_z, cosine, root, alpha] = numbers;
+        let n = Vectors::<S>::new(n_x, n_y, n_z).widened();
+        let w = Vectors::<S>::new(w_x, w_y, w_z).widened();
+
+        let sine = length_of_cross(n, w).narrowed();
+        let smallest_cosine = cosine / ((sine + 1.0) * 2.0).sqrt();
+        let most = max_fresnel::<S, F>(simd, fresnels, smallest_cosine);
+        let lit = cosine.simd_gt(S::f32s::splat(simd, 0.0));
+        let reflected = lit.select(most, S::f32s::splat(simd, 0.0));
+        let masking = S::f32s::splat(simd, 0.5) / (cosine + root);
+        let radius = (reflected * masking * FRAC_1_PI).sqrt();
+        let unit = Spheroids {
+            focus: Vectors::new(p_x, p_y, p_z),
+            axis: mirror_direction(n, w),
+            radius: enlarged_for_tilt(simd, radius, alpha),
+            roughness: alpha,
+        };
+        let scale = scale(simd, &frame.roulette, flux, xi);
+        let placed = unit.placed_at_light(simd, unit.focus, scale);
+        stretched_spheroids(simd, placed, frame)
+    }
+}
+
+/// [`Fresnel::maximum`], one lane after the other.
+#[inline(always)]
+fn max_fresnel<S: Simd, F: Fresnel>(simd: S, fresnels: &[F], cosines: S::f32s) -> S::f32s {
+    let mut most = [0.0; LANES];
+    let mut lanes = [0.0; LANES];
+    cosines.store_slice(&mut lanes[..S::f32s::LEN]);
+    for ((most, fresnel), cosine) in most.iter_mut().zip(fresnels).zip(lanes) {
+        *most = fresnel.maximum(cosine);
+    }
+    S::f32s::from_slice(simd, &most[..S::f32s::LEN])
+}
+
+/// [`GgxLobe::mirror_direction`].
+#[inline(always)]
+fn mirror_direction<S: Simd>(n: [Wide<S>; 3], w: [Wide<S>; 3]) -> Vectors<S> {
+    let twice = dot(n, w) * 2.0 / dot(n, n);
+    Vectors::new(
+        (twice * n[0] - w[0]).narrowed(),
+        (twice * n[1] - w[1]).narrowed(),
+        (twice * n[2] - w[2]).narrowed(),
+    )
+}
+
+/// The radius that `Spheroid::around_tilted_axis` gives a lobe's unit bound.
+#[inline(always)]
+fn enlarged_for_tilt<S: Simd>(simd: S, radius: S::f32s, alpha: S::f32s) -> S::f32s {
+    let one = S::f32s::splat(simd, 1.0);
+    let x = (one - alpha) * AXIS_TILT_RADIANS * (alpha + 1.0) / (alpha * 2.0);
+    round_up::<S>(radius * (x * (x + 1.0) + 1.0), 16)
+}
+
+impl Source for Spheroid {
+    type Light = Self;
+    type Given = Place;
+    type Shape = Stretch;
+    /// The focus, the axis, r, α, the position and the scale.
+    type Numbers<T: Lane> = [T; 12];
+    type Rest = ();
+
+    fn numbers_of<T: Lane>(value: T) -> [T; 12] {
+        [value; 12]
+    }
+
+    #[inline]
+    fn numbers(spheroid: &Self, (p, scale): Place) -> [f32; 12] {
+        let (f, u) = (spheroid.focus(), spheroid.axis());
+        let (radius, alpha) = (spheroid.radius(), spheroid.roughness());
+        [
+            f.x, f.y, f.z, u.x, u.y, u.z, radius, alpha, p.x, p.y, p.z, scale,
+        ]
+    }
+
+    #[inline]
+    fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn may_reach(light: &Self, (_, scale): Place) -> bool {
+        !light.is_empty() && scale > 0.0
+    }
+
+    #[inline(always)]
+    fn shapes<S: Simd>(
+        simd: S,
+        numbers: &[S::f32s; 12],
+        _: &[()],
+        frame: &Frame,
+    ) -> (OfShape<S, Stretch>, S::mask32s) {
+        let [
+            f_x,
+            f_y,
+            f_z,
+            u_x,
+            u_y,
+            u_z,
+            radius,
+            roughness,
+            p_x,
+            p_y,
+            p_z,
+            scale,
+        ] = *numbers;
+        let unit = Spheroids::<S> {
+            focus: Vectors::new(f_x, f_y, f_z),
+            axis: Vectors::new(u_x, u_y, u_z),
+            radius,
+            roughness,
+        };
+        let placed = unit.placed(simd, Vectors::new(p_x, p_y, p_z), scale);
+        stretched_spheroids(simd, placed, frame)
+    }
+}
+
+/// What is left of spheroids in place: their stretches.
+#[inline(always)]
+fn stretched_spheroids<S: Simd>(
+    simd: S,
+    spheroids: Spheroids<S>,
+    frame: &Frame,
+) -> (OfShape<S, Stretch>, S::mask32s) {
+    let somewhere = spheroids.radius.simd_gt(S::f32s::splat(simd, 0.0));
+    let seen = spheroids.ellipsoids(simd).stretched(simd, &frame.view);
+    (seen, somewhere)
+}

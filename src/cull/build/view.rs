@@ -1,0 +1,228 @@
+//! Shapes before a camera: what [`Stretch::new`](crate::Stretch::new) and
+//! [`CameraSphere::new`](crate::CameraSphere::new) do, in lanes.
+
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
+use glam::{Mat3, Vec3};
+
+use super::vector::{Vectors, dot_with, product, round_up};
+use crate::cull::lanes::{Ends, splat};
+use crate::cull::shape::{UNIT_REACH, outward_of};
+use crate::{Camera, math};
+
+/// A camera, with what is the same for all lights.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct View {
+    rotation: Mat3,
+    /// The rows of the rotation, and what each of them makes of no offset from the light: a zero, whose
+    /// sign counts.
+    rows: [[f64; 3]; 3],
+    nothing: [f64; 3],
+    translation: [f64; 3],
+    translation_abs: Vec3,
+    /// Shares of lengths.
+    of_box: f32,
+    of_tilt: f32,
+    of_scaling: f32,
+}
+
+impl View {
+    pub fn new(camera: &Camera) -> Self {
+        let rotation = camera.rotation();
+        let rows = [0, 1, 2].map(|i| rotation.row(i));
+        let deviation = camera.rotation_deviation();
+        Self {
+            rotation,
+            rows: rows.map(|row| row.to_array().map(f64::from)),
+            nothing: rows.map(|row| math::dot(row, Vec3::ZERO)),
+            translation: camera.translation().to_array().map(f64::from),
+            translation_abs: camera.translation().abs(),
+            of_box: 9.0 * camera.corner_secant(),
+            of_tilt: 128.0 * math::UNIT_ROUNDOFF + 6.0 * deviation,
+            of_scaling: 3.0 * deviation,
+        }
+    }
+
+    /// [`Camera::sum_to_camera_space`].
+    #[inline(always)]
+    fn sum_seen<S: Simd>(&self, parts: [Vectors<S>; 2]) -> Vectors<S> {
+        let [first, second] = [parts[0].widened(), parts[1].widened()];
+        let mut center = parts[0].to_array();
+        for (i, coordinate) in center.iter_mut().enumerate() {
+            let turned = dot_with(self.rows[i], first) + dot_with(self.rows[i], second);
+            *coordinate = (turned + self.translation[i]).narrowed();
+        }
+        Vectors::from_array(center)
+    }
+
+    /// [`Camera::to_camera_space`].
+    #[inline(always)]
+    fn seen<S: Simd>(&self, point: Vectors<S>) -> Vectors<S> {
+        let wide = point.widened();
+        let mut seen = point.to_array();
+        for (i, coordinate) in seen.iter_mut().enumerate() {
+            let turned = dot_with(self.rows[i], wide) + self.nothing[i];
+            *coordinate = (turned + self.translation[i]).narrowed();
+        }
+        Vectors::from_array(seen)
+    }
+
+    /// `rounding_before` of `stretch`; `terms` is the sum of the parts' absolute values.
+    #[inline(always)]
+    fn rounding_before<S: Simd>(
+        &self,
+        terms: Vectors<S>,
+        center: Vectors<S>,
+        reach: S::f32s,
+    ) -> S::f32s {
+        let farthest_depth = center.z.max(0.0) + reach;
+        let of_center = center.length() * 6.0;
+        let of_box = farthest_depth * self.of_box;
+        let of_terms = (terms + self.translation_abs).element_sum() * Camera::ROUNDINGS_OF_TERMS;
+        (of_center + of_box) * math::UNIT_ROUNDOFF + of_terms
+    }
+}
+
+/// The fields of the shape in each lane, and the depths that it reaches.
+#[derive(Clone, Copy)]
+pub struct Seen<S: Simd, F> {
+    pub(super) fields: F,
+    pub(super) reach: Ends<S>,
+}
+
+/// An [`Ellipsoid`](crate::Ellipsoid) in each lane.
+#[derive(Clone, Copy)]
+pub(super) struct Ellipsoids<S: Simd> {
+    /// Whose exact sum is the centre.
+    pub parts: [Vectors<S>; 2],
+    /// The columns of R.
+    pub axes: [Vectors<S>; 3],
+    pub semi_axes: Vectors<S>,
+}
+
+impl<S: Simd> Ellipsoids<S> {
+    /// The stretches, none of which is of an empty ellipsoid.
+    #[inline(always)]
+    pub fn stretched(self, simd: S, view: &View) -> Seen<S, [S::f32s; 10]> {
+        let Self {
+            parts,
+            axes,
+            semi_axes,
+        } = self;
+        let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
+        let center = view.sum_seen(parts);
+        let finite = semi_axes.is_finite() & center.is_finite();
+
+        let axes = [
+            product(view.rotation, axes[0]),
+            product(view.rotation, axes[1]),
+            product(view.rotation, axes[2]),
+        ];
+        let [xx, xy, xz, yx, yy, yz, m] = triangular_stretch(simd, axes, semi_axes);
+        let terms = parts[0].abs() + parts[1].abs();
+        let rounding = view.rounding_before(terms, center, longest);
+        let tilt = longest * view.of_tilt;
+        let enlarged = round_up::<S>(shortest + (rounding + tilt), 4).max(f32::MIN_POSITIVE);
+        let factor = S::f32s::splat(simd, 1.0) / enlarged;
+
+        let [xx, xy, xz] = [xx * factor, xy * factor, xz * factor];
+        let [yx, yy, yz] = [yx * factor, yy * factor, yz * factor];
+        let (m, zero) = (m * factor, factor * 0.0);
+        let mut fields = [
+            xx,
+            xy,
+            xz,
+            yx,
+            yy,
+            yz,
+            m,
+            xx * center.x + xy * center.y + xz * center.z,
+            yx * center.x + yy * center.y + yz * center.z,
+            zero * center.x + zero * center.y + m * center.z,
+        ];
+        for field in &mut fields {
+            *field = finite.select(*field, S::f32s::splat(simd, 0.0));
+        }
+        let [.., m, _, _, depth] = fields;
+        let reach = [(depth - UNIT_REACH) / m, (depth + UNIT_REACH) / m];
+        Seen {
+            fields,
+            reach: outward_of(simd, reach),
+        }
+    }
+}
+
+/// The elements of M·r_min that are not zero, row by row.
+#[inline(always)]
+fn triangular_stretch<S: Simd>(
+    simd: S,
+    axes: [Vectors<S>; 3],
+    semi_axes: Vectors<S>,
+) -> [S::f32s; 7] {
+    let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
+    let inverse = Vectors::<S>::new(
+        shortest / semi_axes.x,
+        shortest / semi_axes.y,
+        shortest / semi_axes.z,
+    );
+    let direct = Vectors::<S>::new(
+        semi_axes.x / longest,
+        semi_axes.y / longest,
+        semi_axes.z / longest,
+    );
+    let [u, v, w] = axes;
+    let x = Vectors::<S>::new(u.x, v.x, w.x);
+    let y = Vectors::<S>::new(u.y, v.y, w.y);
+    let z = Vectors::<S>::new(u.z, v.z, w.z);
+    let (inverse_squared, direct_squared) = (inverse.times(inverse), direct.times(direct));
+    let a_xx = inverse_squared.times(x).dot(x);
+    let a_yy = inverse_squared.times(y).dot(y);
+    let a_xy = inverse_squared.times(x).dot(y);
+    let c_xz = direct_squared.times(x).dot(z);
+    let c_yz = direct_squared.times(y).dot(z);
+    let c_zz = direct_squared.times(z).dot(z);
+
+    let depth_reach = c_zz.sqrt();
+    let root = depth_reach * (shortest / semi_axes.median());
+    let zero = S::f32s::splat(simd, 0.0);
+    let x_first = a_xx.simd_gt(a_yy);
+    let first = x_first.select(a_xx, a_yy).sqrt();
+    let (mixed, second) = (a_xy / first, root / first);
+    let (xx, xy) = (x_first.select(first, second), x_first.select(mixed, zero));
+    let (yx, yy) = (x_first.select(zero, mixed), x_first.select(second, first));
+    let shear_x = (xx * c_xz + xy * c_yz) / c_zz;
+    let shear_y = (yx * c_xz + yy * c_yz) / c_zz;
+    let m = shortest / (longest * depth_reach);
+    [xx, xy, -shear_x, yx, yy, -shear_y, m]
+}
+
+/// A [`Sphere`](crate::Sphere) in each lane.
+#[derive(Clone, Copy)]
+pub(super) struct Spheres<S: Simd> {
+    pub center: Vectors<S>,
+    pub radius: S::f32s,
+}
+
+impl<S: Simd> Spheres<S> {
+    /// The spheres before the camera, none of which is of an empty sphere.
+    #[inline(always)]
+    pub fn before(self, simd: S, view: &View) -> Seen<S, [S::f32s; 4]> {
+        let center = view.seen(self.center);
+        let finite = self.radius.is_finite() & center.is_finite();
+        let rounding = view.rounding_before(self.center.abs(), center, self.radius);
+        let scaling = self.radius * view.of_scaling;
+        let enlarged = round_up::<S>(self.radius + rounding + scaling, 8);
+        let squared = enlarged * enlarged;
+        let [zero, infinite] = splat(simd, [0.0, f32::INFINITY]);
+        let radius = round_up::<S>(finite.select(enlarged, infinite), 4);
+        let depth = finite.select(center.z, zero);
+        Seen {
+            fields: [
+                finite.select(center.x, zero),
+                finite.select(center.y, zero),
+                depth,
+                finite.select(squared, infinite),
+            ],
+            reach: outward_of(simd, [depth - radius, depth + radius]),
+        }
+    }
+}

@@ -1,0 +1,364 @@
+//! Lights that are made ready sixteen at a time are, bit by bit, those made ready one by one.
+#![cfg(feature = "cull")]
+
+mod generators;
+mod reference;
+
+use generators::{Lit, cases, log_uniform};
+use proptest::prelude::*;
+use stochastic_light_culling::{
+    AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BatchLobe, Bound, Bounded, Camera,
+    CameraSphere, Conductor, ConstantLobe, DepthOrder, Direction, Ellipsoid, Fresnel, Ggx, GgxLobe,
+    LambertLobe, LightBatch, MaskingShadowing, NoFresnel, Roulette, Schlick, Sphere, Spheroid,
+    Stretch, Vpl, Xi, glam::Vec3,
+};
+
+/// What a light is made of, whatever its lobe.
+#[derive(Clone, Copy, Debug)]
+struct Parts {
+    position: Vec3,
+    flux: f32,
+    xi: Xi,
+    lit: Lit,
+    roughness: f32,
+    /// An albedo, or a reflectance.
+    share: f32,
+}
+
+impl Parts {
+    fn vpl<L: BatchLobe>(&self, lobe: L) -> (Vpl<L>, Xi) {
+        (Vpl::new(self.position, self.flux, lobe).unwrap(), self.xi)
+    }
+
+    fn ggx<F: Fresnel>(&self, fresnel: F) -> GgxLobe<F> {
+        let ggx = Ggx::new(self.roughness).unwrap();
+        GgxLobe::new(ggx, fresnel, self.lit.normal, self.lit.incoming)
+    }
+
+    fn conductor(&self) -> Conductor {
+        Conductor::new(0.1 + self.share, 3.0).unwrap()
+    }
+}
+
+/// Often ordinary, now and then out of all bounds: dark, blinding, lit from behind, and narrow.
+fn parts() -> impl Strategy<Value = Parts> {
+    let position = prop_oneof![
+        20 => generators::position(),
+        1 => Just(Vec3::splat(3e38)),
+    ];
+    let flux = prop_oneof![
+        20 => log_uniform(1e-6, 1e6).prop_map(|x| x as f32),
+        1 => Just(0.0),
+        1 => Just(f32::from_bits(1)),
+        1 => Just(1e-40),
+        1 => Just(f32::MAX),
+    ];
+    let xi = prop_oneof![
+        20 => log_uniform(2.3e-10, 1.0).prop_map(|x| x as f32),
+        1 => Just(1.0),
+        1 => Just(f32::from_bits(1)),
+    ];
+    let lit = prop_oneof![
+        20 => generators::lit(),
+        1 => generators::lit().prop_map(|lit| Lit { incoming: -lit.incoming, ..lit }),
+        1 => generators::lit().prop_map(|lit| Lit { incoming: lit.normal, ..lit }),
+    ];
+    let roughness = prop_oneof![
+        20 => generators::roughness(),
+        1 => Just(Ggx::MIN_ROUGHNESS),
+    ];
+    let share = prop_oneof![
+        20 => 0.0..=1.0_f32,
+        1 => Just(0.0),
+        1 => Just(1.0),
+        1 => Just(f32::from_bits(1)),
+    ];
+    (position, flux, xi, lit, roughness, share).prop_map(
+        |(position, flux, xi, lit, roughness, share)| Parts {
+            position,
+            flux,
+            xi: Xi::new(xi).unwrap(),
+            lit,
+            roughness,
+            share,
+        },
+    )
+}
+
+#[derive(Clone, Debug)]
+struct Frame {
+    roulette: Roulette,
+    camera: Camera,
+    lights: Vec<Parts>,
+    /// How many of the lights are added first, before the others.
+    first: usize,
+}
+
+fn frame() -> impl Strategy<Value = Frame> {
+    let delta = prop_oneof![
+        10 => log_uniform(1e-6, 1e3).prop_map(|x| x as f32),
+        1 => Just(f32::from_bits(1)),
+        1 => Just(f32::MAX),
+    ];
+    let lights = prop::collection::vec(parts(), 0..150);
+    (delta, generators::view(), lights, 0..150_usize).prop_map(|(delta, view, lights, first)| {
+        Frame {
+            roulette: Roulette::new(delta).unwrap(),
+            camera: Camera::new(view.from_world, view.projection).unwrap(),
+            first: first.min(lights.len()),
+            lights,
+        }
+    })
+}
+
+trait Bits {
+    fn bits(&self) -> Vec<u32>;
+}
+
+impl Bits for Stretch {
+    fn bits(&self) -> Vec<u32> {
+        let matrix = self.matrix().to_cols_array();
+        let numbers = matrix.into_iter().chain(self.center().to_array());
+        numbers.map(f32::to_bits).collect()
+    }
+}
+
+impl Bits for CameraSphere {
+    fn bits(&self) -> Vec<u32> {
+        let numbers = self.center().to_array().into_iter();
+        let numbers = numbers.chain([self.radius_squared()]);
+        numbers.map(f32::to_bits).collect()
+    }
+}
+
+impl Frame {
+    /// Whether `add` adds to a batch, of the lights in two parts, the shapes that are `expected`: `None`
+    /// for a light that reaches nowhere.
+    fn same<T: stochastic_light_culling::BatchShape + Bits>(
+        &self,
+        expected: &[Option<T>],
+        add: impl Fn(&BatchBuilder, std::ops::Range<usize>, &mut LightBatch<T>),
+    ) -> Result<(), TestCaseError> {
+        let expected: Vec<_> = (0..)
+            .zip(expected)
+            .filter_map(|(number, shape)| Some((number, shape.as_ref()?.bits())))
+            .collect();
+        for lanes in [16, 8, 4] {
+            let builder = BatchBuilder::new(&self.roulette, &self.camera).with_lanes(lanes);
+            let mut batch = LightBatch::new();
+            // Twice, for what the first leaves behind.
+            for _ in 0..2 {
+                batch.clear();
+                add(&builder, 0..self.first, &mut batch);
+                add(&builder, self.first..self.lights.len(), &mut batch);
+                let found = batch.iter().map(|(number, shape)| (number, shape.bits()));
+                prop_assert_eq!(&found.collect::<Vec<_>>(), &expected);
+                prop_assert_eq!(batch.len(), expected.len());
+            }
+        }
+        Ok(())
+    }
+
+    fn same_ggx<F: Fresnel, G: MaskingShadowing>(
+        &self,
+        lobe: impl Fn(&Parts) -> GgxLobe<F, G>,
+    ) -> Result<(), TestCaseError> {
+        let lights: Vec<_> = self.lights.iter().map(|p| p.vpl(lobe(p))).collect();
+        let numbered = |range: std::ops::Range<usize>| {
+            let numbers = range.start as u32..;
+            numbers
+                .zip(&lights[range])
+                .map(|(i, (light, xi))| (i, light, *xi))
+        };
+        let spheroids: Vec<_> = lights
+            .iter()
+            .map(|(light, xi)| light.bound(&self.roulette, *xi).into())
+            .map(|ellipsoid| Stretch::new(&ellipsoid, &self.camera))
+            .collect();
+        self.same(&spheroids, |builder, range, batch| {
+            builder.add(numbered(range), batch);
+        })?;
+        let tight: Vec<_> = lights
+            .iter()
+            .map(|(light, xi)| light.tight_bound(&self.roulette, *xi))
+            .map(|ellipsoid| Stretch::new(&ellipsoid, &self.camera))
+            .collect();
+        self.same(&tight, |builder, range, batch| {
+            builder.add_tight(numbered(range), batch);
+        })
+    }
+
+    fn same_spheres<L>(&self, lobe: impl Fn(&Parts) -> L) -> Result<(), TestCaseError>
+    where
+        L: BatchLobe<Bound = Sphere, Shape = CameraSphere>,
+    {
+        let lights: Vec<_> = self.lights.iter().map(|p| p.vpl(lobe(p))).collect();
+        let spheres: Vec<_> = lights
+            .iter()
+            .map(|(light, xi)| light.bound(&self.roulette, *xi))
+            .map(|sphere| CameraSphere::new(&sphere, &self.camera))
+            .collect();
+        self.same(&spheres, |builder, range, batch| {
+            let numbers = range.start as u32..;
+            let lights = numbers.zip(&lights[range]);
+            builder.add(lights.map(|(i, (light, xi))| (i, light, *xi)), batch);
+        })
+    }
+
+    /// Of bounds that are kept, with `expected` their shape if they are placed one by one.
+    fn same_placed<B, T>(
+        &self,
+        bounds: &[B],
+        shape: impl Fn(B) -> Option<T>,
+    ) -> Result<(), TestCaseError>
+    where
+        B: stochastic_light_culling::BatchBound<Shape = T>,
+        T: stochastic_light_culling::BatchShape + Bits,
+    {
+        let scale = |light: &Parts| self.roulette.scale(light.flux, light.xi);
+        let placed = self.lights.iter().zip(bounds);
+        let expected: Vec<_> = placed
+            .map(|(light, bound)| shape(bound.placed(light.position, scale(light))))
+            .collect();
+        self.same(&expected, |builder, range, batch| {
+            let placed = (range.start as u32..).zip(&self.lights[range.clone()]);
+            let placed = placed.zip(&bounds[range]);
+            let placed = placed
+                .map(|((number, light), bound)| (number, bound, light.position, scale(light)));
+            builder.add_placed(placed, batch);
+        })
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(256))]
+
+    #[test]
+    fn glossy_lights(frame in frame()) {
+        frame.same_ggx(|light| light.ggx(NoFresnel))?;
+        frame.same_ggx(|light| light.ggx(Schlick::new(light.share).unwrap()))?;
+        frame.same_ggx(|light| light.ggx(light.conductor()).separable())?;
+    }
+
+    #[test]
+    fn anisotropic_lights(frame in frame()) {
+        let lobe = |light: &Parts| {
+            let ggx = AnisotropicGgx::new(light.roughness, light.share.max(1e-3)).unwrap();
+            let tangent = Direction::new(light.lit.normal.any_orthonormal_vector()).unwrap();
+            let Lit { normal, incoming, .. } = light.lit;
+            AnisotropicGgxLobe::new(ggx, light.conductor(), normal, tangent, incoming).unwrap()
+        };
+        let lights: Vec<_> = frame.lights.iter().map(|p| p.vpl(lobe(p))).collect();
+        let stretches: Vec<_> = lights
+            .iter()
+            .map(|(light, xi)| light.bound(&frame.roulette, *xi))
+            .map(|ellipsoid| Stretch::new(&ellipsoid, &frame.camera))
+            .collect();
+        frame.same(&stretches, |builder, range, batch| {
+            let lights = (range.start as u32..).zip(&lights[range]);
+            builder.add(lights.map(|(i, (light, xi))| (i, light, *xi)), batch);
+        })?;
+    }
+
+    #[test]
+    fn diffuse_and_point_lights(frame in frame()) {
+        frame.same_spheres(|light| LambertLobe::new(light.share, light.lit.normal).unwrap())?;
+        frame.same_spheres(|_| ConstantLobe)?;
+    }
+
+    #[test]
+    fn bounds_that_are_kept(frame in frame()) {
+        let spheroids: Vec<Spheroid> = frame
+            .lights
+            .iter()
+            .map(|light| light.ggx(light.conductor()).unit_bound())
+            .collect();
+        let stretch = |ellipsoid| Stretch::new(&ellipsoid, &frame.camera);
+        frame.same_placed(&spheroids, |spheroid| stretch(spheroid.into()))?;
+        let spheres: Vec<Sphere> = spheroids.iter().map(Spheroid::enclosing_sphere).collect();
+        frame.same_placed(&spheres, |sphere| CameraSphere::new(&sphere, &frame.camera))?;
+        let ellipsoids: Vec<Ellipsoid> = frame
+            .lights
+            .iter()
+            .map(|light| light.ggx(NoFresnel).tight_bound())
+            .collect();
+        frame.same_placed(&ellipsoids, stretch)?;
+        // Not around the origin.
+        let moved = spheroids.iter().zip(&frame.lights);
+        let moved: Vec<_> = moved.map(|(bound, light)| bound.placed(light.position, 0.5)).collect();
+        frame.same_placed(&moved, |spheroid| stretch(spheroid.into()))?;
+        let moved: Vec<Ellipsoid> = moved.into_iter().map(Ellipsoid::from).collect();
+        frame.same_placed(&moved, stretch)?;
+    }
+
+    #[test]
+    fn depth_order_is_stable_and_that_of_depths(
+        view in generators::view(),
+        positions in prop::collection::vec(generators::position(), 0..300),
+    ) {
+        let camera = Camera::new(view.from_world, view.projection).unwrap();
+        let depth = |index: u32| camera.to_camera_space(positions[index as usize]).z;
+        let farthest = (0..positions.len() as u32).map(depth).fold(0.0, f32::max);
+        let mut order = DepthOrder::new();
+        order.of([Vec3::ONE; 7], &camera);
+        let order = order.of(positions.iter().copied(), &camera);
+
+        let mut sorted = order.to_vec();
+        sorted.sort_unstable();
+        prop_assert_eq!(sorted, (0..positions.len() as u32).collect::<Vec<_>>());
+        for pair in order.windows(2) {
+            let [near, far] = [depth(pair[0]), depth(pair[1])];
+            // To the one per cent of its steps, and the rounding of depths.
+            let least = farthest / 200.0;
+            prop_assert!(near <= 1.01 * far.max(least) + 1e-2, "{near} {far}");
+            prop_assert!(pair[0] < pair[1] || near < far + 1e-2, "{near} {far}");
+        }
+    }
+}
+
+#[test]
+fn lights_behind_the_eye_come_first_in_the_order_given() {
+    let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..9.0).unwrap();
+    let positions =
+        [-4.0, 3.0, -2.0, -1e-3, 1.0, -4.0, f32::MAX, -2.0].map(|z| Vec3::new(0.5, 0.1, z));
+    let mut order = DepthOrder::new();
+    assert_eq!(order.of(positions, &camera), [1, 3, 4, 6, 2, 7, 0, 5]);
+    assert!(order.of([], &camera).is_empty());
+    let unseen = [Vec3::Z, Vec3::ZERO, Vec3::splat(f32::MAX)];
+    assert_eq!(order.of(unseen, &camera), [0, 1, 2]);
+}
+
+#[test]
+fn nothing_comes_of_nothing() {
+    let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..9.0).unwrap();
+    let builder = BatchBuilder::new(&Roulette::new(0.1).unwrap(), &camera);
+    let mut batch = LightBatch::new();
+    builder.add::<LambertLobe>([], &mut batch);
+    let xi = Xi::new(0.5).unwrap();
+    let lobe = LambertLobe::new(0.5, Direction::Y).unwrap();
+    let dark = Vpl::new(Vec3::ZERO, 0.0, lobe).unwrap();
+    builder.add([(0, &dark, xi), (1, &dark, xi)], &mut batch);
+    assert!(batch.is_empty() && batch.iter().next().is_none());
+}
+
+#[test]
+fn later_frames_allocate_nothing() {
+    let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..9.0).unwrap();
+    let lobe = LambertLobe::new(0.5, Direction::Y).unwrap();
+    let light = |i| Vpl::new(Vec3::new(0.0, 1.0, -0.1 * i as f32), 1.0, lobe).unwrap();
+    let lights: Vec<_> = (0..1000).map(light).collect();
+    let (mut order, mut batch) = (DepthOrder::new(), LightBatch::new());
+    let mut draw_frame = || {
+        let builder = BatchBuilder::new(&Roulette::new(0.1).unwrap(), &camera);
+        let order = order.of(lights.iter().map(Vpl::position), &camera);
+        let lights = order
+            .iter()
+            .map(|i| (*i, &lights[*i as usize], Xi::hashed(*i, 0, 0)));
+        batch.clear();
+        builder.add(lights, &mut batch);
+    };
+    let first = allocation_counter::measure(&mut draw_frame);
+    assert!(first.count_total > 0);
+    let second = allocation_counter::measure(&mut draw_frame);
+    assert_eq!(second.count_total, 0);
+}
