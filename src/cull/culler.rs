@@ -155,7 +155,9 @@ pub(super) fn widest() -> Level {
 /// The widest vectors of at most `lanes` lanes, where there is a choice.
 pub(super) fn at_most(lanes: usize) -> Level {
     let widest = widest();
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    let _ = lanes;
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     let widest = match lanes {
         ..8 => widest.as_sse2().map_or(widest, Level::Sse2),
         8..16 => widest.as_avx2().map_or(widest, Level::Avx2),
