@@ -60,6 +60,7 @@ impl Direction {
     }
 
     /// `vector`, which has unit length already.
+    #[inline]
     pub(crate) fn from_unit(vector: Vec3) -> Self {
         debug_assert!((math::dot(vector, vector) - 1.0).abs() < 1e-6);
         Self(vector)
@@ -81,6 +82,7 @@ impl Direction {
     /// 2(n·ω)n − ω, this direction ω mirrored at a surface with the given `normal` = n.
     ///
     /// Reckoned in `f64`, so that rounding to `f32` is all that tilts it: half an ulp in each component.
+    #[inline]
     pub(crate) fn mirrored(self, normal: Self) -> Self {
         let (n, w) = (normal.as_f64(), self.as_f64());
         let twice = 2.0 * math::dot(*normal, *self) / math::dot(*normal, *normal);
@@ -90,6 +92,7 @@ impl Direction {
     }
 
     /// The components, widened.
+    #[inline]
     pub(crate) fn as_f64(self) -> [f64; 3] {
         self.0.to_array().map(f64::from)
     }
