@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use stochastic_light_culling::{BatchShape, Camera, Error, LambertLobe, Lobe};
+use stochastic_light_culling::{BatchShape, Camera, Error, LambertLobe, Lobe, Roulette};
 
 use super::bounds::{self, BoundKind, GlossyLight};
 use super::cull::Cullers;
@@ -36,28 +36,13 @@ pub fn measure_glossy(
     bound: BoundKind,
     done: impl Fn() + Sync,
 ) -> Result<Vec<Measured>, Error> {
-    let roulette = &frame.roulette;
+    let frame = (frame, tilings, camera);
     match bound {
-        BoundKind::Sphere => {
-            let shape = |light: &_| bounds::sphere_at_light(light, roulette, camera);
-            measure(frame, tilings, lights, bound, shape, done)
-        }
-        BoundKind::Enclosing => {
-            let shape = |light: &_| bounds::enclosing_sphere(light, roulette, camera);
-            measure(frame, tilings, lights, bound, shape, done)
-        }
-        BoundKind::Spheroid => {
-            let shape = |light: &_| bounds::spheroid(light, roulette, camera);
-            measure(frame, tilings, lights, bound, shape, done)
-        }
-        BoundKind::Triaxial => {
-            let shape = |light: &_| bounds::triaxial(light, roulette, camera);
-            measure(frame, tilings, lights, bound, shape, done)
-        }
-        BoundKind::Tight => {
-            let shape = |light: &_| bounds::tight(light, roulette, camera);
-            measure(frame, tilings, lights, bound, shape, done)
-        }
+        BoundKind::Sphere => measure(frame, lights, bound, bounds::sphere_at_light, done),
+        BoundKind::Enclosing => measure(frame, lights, bound, bounds::enclosing_sphere, done),
+        BoundKind::Spheroid => measure(frame, lights, bound, bounds::spheroid, done),
+        BoundKind::Triaxial => measure(frame, lights, bound, bounds::triaxial, done),
+        BoundKind::Tight => measure(frame, lights, bound, bounds::tight, done),
     }
 }
 
@@ -69,18 +54,24 @@ pub fn measure_diffuse(
     lights: &[Light<LambertLobe>],
     done: impl Fn() + Sync,
 ) -> Result<Vec<Measured>, Error> {
-    let shape = |light: &_| bounds::diffuse_sphere(light, &frame.roulette, camera);
-    measure(frame, tilings, lights, BoundKind::Sphere, shape, done)
+    let frame = (frame, tilings, camera);
+    measure(
+        frame,
+        lights,
+        BoundKind::Sphere,
+        bounds::diffuse_sphere,
+        done,
+    )
 }
 
 fn measure<L: Lobe + Sync, T: BatchShape + Send + Sync>(
-    frame: &Frame,
-    tilings: &[Tiling],
+    (frame, tilings, camera): (&Frame, &[Tiling], &Camera),
     lights: &[Light<L>],
     bound: BoundKind,
-    shape: impl Fn(&Light<L>) -> Option<T> + Sync,
+    shape: fn(&Light<L>, &Roulette, &Camera) -> Option<T>,
     done: impl Fn() + Sync,
 ) -> Result<Vec<Measured>, Error> {
+    let shape = |light: &_| shape(light, &frame.roulette, camera);
     let (batches, bound_ms) = timed(|| bounds::batches(lights, &frame.interleave, shape));
     let measured = |tiling: &Tiling| {
         let mut cullers = Cullers::new(tiling.tiles);
