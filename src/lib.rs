@@ -123,9 +123,10 @@
 //! - `cull`: many lights against many tiles, in vectors as wide as the processor has. Needs an
 //!   allocator, and Rust 1.89.
 //! - `rayon`: the same on many cores. Brings `cull` and `std`.
-//! - `serde`: materials, roulette, ξ, directions, tile grids, depth intervals and interleaving can be
-//!   saved under the names of their constructors' arguments. What is read goes through the constructors,
-//!   and what they refuse is an error with their words.
+//! - `serde`: materials, lobes and lights, cameras, and settings such as roulette, ξ, tile grids, depth
+//!   intervals and interleaving can be saved, most under the names of their constructors' arguments, and
+//!   are read bit for bit. What is read goes through the constructors, and what they refuse is an error
+//!   with their words. Bounds, stretches, batches and lists, which follow from these, are made again.
 //! - `bytemuck`: `GpuStretch` and `GpuSphere`, lights as the records that a shader reads. The lists of
 //!   `LightLists` are such buffers as they are.
 //!

@@ -53,14 +53,18 @@ pub fn stretch_matrix(ellipsoid: &Ellipsoid, camera: &Camera) -> Mat3 {
 
 /// B, the rotation that takes the images under `stretch` = S of planes of constant depth to planes of
 /// constant z [Tokuyoshi & Harada 2017, Eq. 17].
+///
+/// Not finite if S is singular or not finite itself.
 pub fn stretch_rotation(stretch: Mat3) -> Mat3 {
+    // Not `normalize`, which panics at zero where glam is built with its assertions.
+    let unit = |v: Vec3| v * v.length().recip();
     let (x, y) = (stretch.x_axis, stretch.y_axis);
-    let z = x.cross(y).normalize();
+    let z = unit(x.cross(y));
     if x.length_squared() > y.length_squared() {
-        let x = x.normalize();
+        let x = unit(x);
         Mat3::from_cols(x, z.cross(x), z).transpose()
     } else {
-        let y = y.normalize();
+        let y = unit(y);
         Mat3::from_cols(y.cross(z), y, z).transpose()
     }
 }

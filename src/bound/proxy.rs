@@ -28,6 +28,7 @@ use crate::wide::{self, Vector};
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Proxy {
     /// 20 triangles with 12 vertices: 1.207 times the ellipsoid's volume.
     Icosahedron,

@@ -32,6 +32,18 @@ use crate::{Direction, Error, math};
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        into = "crate::unchecked::AnisotropicGgxLobe<F>",
+        try_from = "crate::unchecked::AnisotropicGgxLobe<F>",
+        bound(
+            serialize = "F: Fresnel + serde::Serialize, G: Copy",
+            deserialize = "F: Fresnel + serde::Deserialize<'de>"
+        )
+    )
+)]
 pub struct AnisotropicGgxLobe<F = NoFresnel, G = HeightCorrelated> {
     ggx: AnisotropicGgx,
     /// As given.
@@ -87,6 +99,13 @@ impl<F: Fresnel> AnisotropicGgxLobe<F> {
 
     /// The same lobe with [`Separable`] masking and shadowing.
     pub fn separable(self) -> AnisotropicGgxLobe<F, Separable> {
+        self.with_masking()
+    }
+}
+
+impl<F: Fresnel, G> AnisotropicGgxLobe<F, G> {
+    /// The same lobe with masking and shadowing of another form.
+    pub(crate) fn with_masking<H>(self) -> AnisotropicGgxLobe<F, H> {
         let Self {
             ggx,
             tangent,
@@ -97,12 +116,10 @@ impl<F: Fresnel> AnisotropicGgxLobe<F> {
             ggx,
             tangent,
             tangent_axes,
-            at_any_azimuth: at_any_azimuth.separable(),
+            at_any_azimuth: at_any_azimuth.with_masking(),
         }
     }
-}
 
-impl<F: Fresnel, G> AnisotropicGgxLobe<F, G> {
     /// The microsurface.
     pub fn ggx(&self) -> AnisotropicGgx {
         self.ggx

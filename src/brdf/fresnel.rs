@@ -44,6 +44,7 @@ pub trait Fresnel: Copy {
 
 /// base + rise (1 − cosθ_h)⁵, at least F for every cosθ_h in \[0, 1\].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FresnelMajorant {
     /// Its value head-on, at least 10⁻³⁰.
     pub base: f32,

@@ -49,6 +49,7 @@ pub struct Culler<T: BatchShape> {
 
 /// What one cull did, and what it was spared.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CullCounters {
     /// Tests of a light against a block of tiles.
     pub block_tests: u64,

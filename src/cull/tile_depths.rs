@@ -54,7 +54,8 @@ impl TileDepths {
         intervals: u32,
         rectangle: impl Fn([u32; 2]) -> TileRectangle,
     ) -> Result<Self, Error> {
-        let slots = u64::from(size[0]) * u64::from(size[1]) * u64::from(intervals);
+        // Of two they fit, but not of three.
+        let slots = (u64::from(size[0]) * u64::from(size[1])).saturating_mul(intervals.into());
         if slots == 0 || slots > u64::from(u32::MAX) {
             return Err(Error::Size {
                 quantity: "grid of tiles",
