@@ -25,6 +25,11 @@ use crate::{Direction, Error, math};
 /// let towards = |x, y| Direction::new(Vec3::new(x, y, 1.0)).map(Vec3::from);
 /// assert!(lobe.value(towards(1.0, 0.3)?) > lobe.value(towards(1.3, 0.0)?));
 ///
+/// assert_eq!((lobe.ggx(), lobe.tangent()), (brushed, tangent));
+/// // No more than this leaves it of what arrives at facets that are lit.
+/// assert!(lobe.max_reflected() <= 1.0 && lobe.incident_cosine() > 0.7);
+/// assert!(lobe.separable().value(towards(1.0, 0.3)?) <= lobe.value(towards(1.0, 0.3)?));
+///
 /// let semi_axes = lobe.unit_bound().semi_axes();
 /// assert!(semi_axes.max_element() > 3.0 * semi_axes.min_element());
 /// // A tangent is needed to say which way is which.

@@ -23,6 +23,12 @@ use crate::{Direction, math};
 /// );
 /// let mirror = Vec3::from(Direction::new(Vec3::new(1.0, 0.0, 1.0))?);
 /// assert!(gold.value(mirror) > gold.value(Vec3::Z));
+/// assert!(gold.separable().value(mirror) < gold.value(mirror));
+///
+/// assert_eq!(gold.ggx().roughness(), 0.2);
+/// assert!((gold.incident_cosine() - 0.5_f32.sqrt()).abs() < 1e-6);
+/// // F is 1 where the reflection grazes the surface, but there it is masked.
+/// assert!(0.9 <= gold.max_reflected() && gold.max_reflected() < gold.max_fresnel());
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

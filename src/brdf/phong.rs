@@ -27,6 +27,10 @@ use crate::{Direction, Error, error, math};
 /// // A slim ellipsoid from the light along the mirror direction.
 /// let semi_axes = plastic.unit_bound().semi_axes();
 /// assert!(semi_axes.x > 3.0 * semi_axes.y);
+///
+/// // A spotlight, with no surface to cut it.
+/// let spot = PhongLobe::about(1.0, 10.0, Direction::X)?;
+/// assert!(spot.incoming().is_none() && spot.exponent() < PhongLobe::MAX_EXPONENT);
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,6 +21,8 @@ use crate::{DepthInterval, Error, TileRectangle};
 ///     let depths = grid.pixels(tile).pixels().map(|[x, y]| (x + y) as f32); // of a depth buffer
 ///     tiles.set(tile, DepthInterval::modified_half_z(depths));
 /// }
+/// assert_eq!((tiles.size(), tiles.intervals()), ([6, 4], 2));
+/// assert_eq!(tiles.interval_of([1, 1], 60.0), Some(1));
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
