@@ -176,18 +176,12 @@ mod unchecked;
 mod vpl;
 mod wide;
 
-pub use bound::{Bound, Bounded, Ellipsoid, Proxy, Sphere, Spheroid};
-pub use brdf::{
-    AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel,
-    FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, LambertLobe, Lobe, MaskingShadowing,
-    NoFresnel, PhongLobe, Schlick, Separable,
-};
+// What a folder shows, its own `mod.rs` says.
+pub use bound::*;
+pub use brdf::*;
 pub use camera::Camera;
 #[cfg(feature = "cull")]
-pub use cull::{
-    BatchBound, BatchBuilder, BatchLobe, BatchShape, CullCounters, Culler, DepthOrder, LightBatch,
-    LightLists, TileDepths,
-};
+pub use cull::*;
 pub use direction::Direction;
 pub use error::Error;
 #[cfg(feature = "bytemuck")]
@@ -196,7 +190,7 @@ pub use half_space::HalfSpace;
 pub use interleave::Interleave;
 pub use range::{Roulette, Xi};
 pub use stretch::{CameraSphere, Stretch, stretch_matrix, stretch_rotation};
-pub use tile::{DepthInterval, PixelRectangle, TileGrid, TileRectangle, TileTest};
+pub use tile::*;
 pub use vpl::Vpl;
 
 pub use glam;
