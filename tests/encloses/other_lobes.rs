@@ -35,12 +35,9 @@ pub fn other_lobes(axis: Direction, share: f32, exponent: f32) -> Vec<OtherLobe>
         f64::from(exponent),
     );
     let spotlight = PhongLobe::about(share, exponent, axis).unwrap();
-    vec![OtherLobe::new("spotlight", &spotlight, move |w| {
-        let cosine = w.dot(u);
-        if cosine <= 0.0 {
-            0.0
-        } else {
-            s * (n + 1.0) / TAU * cosine.powf(n)
-        }
-    })]
+    let of_spotlight = move |w: Vector| match w.dot(u) {
+        cosine if cosine <= 0.0 => 0.0,
+        cosine => s * (n + 1.0) / TAU * cosine.powf(n),
+    };
+    vec![OtherLobe::new("spotlight", &spotlight, of_spotlight)]
 }
