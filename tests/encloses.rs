@@ -220,7 +220,7 @@ fn case() -> impl Strategy<Value = Case> {
         generators::roulette(),
     )
         .prop_map(|(brdf, lit, position, roulette)| Case {
-            brdf: generators::laid_on(&lit, brdf),
+            brdf: brdf.laid_on(lit.surface.normal),
             lit,
             position,
             roulette,

@@ -11,7 +11,7 @@ use stochastic_light_culling::{
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
 
-use crate::adversary::{Light, Tile, laid_on};
+use crate::adversary::{Light, Tile};
 use crate::bits::Bits;
 use crate::culling;
 use crate::probe::{self, Shape};
@@ -288,7 +288,7 @@ pub fn light_in_domain(bits: &mut Bits) {
         return;
     };
     let light = Light {
-        brdf: laid_on(normal, brdf),
+        brdf: brdf.laid_on(Vector::from(*normal)),
         normal,
         incoming,
         position: bits.vector(),
