@@ -27,7 +27,10 @@ const VOLUME: f64 = 0.1;
 /// follows the ellipsoid so closely that the proof would need most boxes.
 const MARGIN_BY_ROUGHNESS: [f64; SIZE[0]] =
     [0.03, 0.004, 0.0, 0.003, 0.006, 0.02, 0.03, 0.03, 0.03];
-const MARGIN_BY_INCIDENCE: [f64; 6] = [0.03, 0.02, 0.012, 0.005, 0.001, 0.0];
+const MARGIN_BY_INCIDENCE: [f64; SIZE[1]] = [
+    0.03, 0.02, 0.012, 0.005, 0.001, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.001, 0.002, 0.003, 0.005,
+    0.005, 0.005, 0.005, 0.005, 0.005, 0.005,
+];
 const MARGIN_BY_REFLECTANCE: [f64; SIZE[2]] = [0.016, 0.016, 0.018, 0.018, 0.012, 0.0, 0.0];
 /// How strongly points are kept from the ellipsoid's surface, which makes the knots change smoothly.
 const STRENGTH: [f64; SIZE[0]] = [0.1, 0.05, 0.04, 0.06, 0.06, 0.06, 0.06, 0.06, 0.06];
@@ -211,7 +214,7 @@ fn growth(knots: &[Knot], cell: [usize; 3]) -> f64 {
         });
         let parameters = [0, 1, 2].map(|i| low[i] + (high[i] - low[i]) * t[i]);
         let room = Room::new(parameters);
-        for point in points(parameters, [60, 24]) {
+        for point in points(parameters, [90, 36]) {
             most = most.max(level(1.0, point, &knot) / room.at(point));
         }
     }
