@@ -21,8 +21,8 @@ const VOLUME: f64 = 0.1;
 
 /// The share by which everything is scaled up about the ellipsoid's centre and yet inside.
 ///
-/// By roughness, and by incidence or reflectance, whichever is more. Little where every per cent is
-/// another light per pixel; more for rough surfaces and dielectrics, where the paper's spheroid is far
+/// By roughness, and by incidence or reflectance, whichever is more. Little where each per cent is up to
+/// eight of the lights per pixel; more for rough surfaces and dielectrics, where the paper's spheroid is far
 /// behind; more near normal incidence, where the spheroid of a metal is taken instead, and the surface
 /// follows the ellipsoid so closely that the proof would need most boxes.
 const MARGIN_BY_ROUGHNESS: [f64; SIZE[0]] =

@@ -42,9 +42,8 @@
 //!
 //! So each knot has as much margin as samples in the cells around it need, and more by roughness,
 //! incidence and F0: up to 6 %, and where smooth metals reflect at an angle next to none, but for what
-//! the fit itself keeps away from the samples (`examples/tabulate`). Whether the
-//! interpolated ellipsoids then enclose the surface for every α and θ is a question in five variables,
-//! which `tests/certificate` answers cell by cell in interval arithmetic: it asks for
+//! the fit itself keeps away from the samples (`examples/tabulate`). Whether the interpolated ellipsoids
+//! then enclose the surface for every α and θ is a question in five variables, which `tests/certificate` answers cell by cell in interval arithmetic: it asks for
 //! ‖y‖² ≤ 1 − 2·10⁻⁴, so that the rounding of the three coordinates, each to some ten units in the last
 //! place, and of the interpolation is paid for. It has proved some of the 960 cells; in the others
 //! enclosure rests, so far, on the samples and on the search of `tests/extremes.rs`.
