@@ -60,6 +60,12 @@ impl Scale {
         (self.low..=self.high).contains(&x)
     }
 
+    /// How far along the axis `x` is, from 0 to 1.
+    pub fn share(&self, x: f64) -> f64 {
+        let [low, high, at] = [self.low, self.high, x].map(|x| self.place(x));
+        (at - low) / (high - low)
+    }
+
     /// `x`, or the nearest number that can be shown.
     pub fn nearest(&self, x: f64) -> f64 {
         x.clamp(self.low, self.high)
@@ -71,8 +77,7 @@ impl Ranged for Scale {
     type ValueType = f64;
 
     fn map(&self, value: &f64, (start, end): (i32, i32)) -> i32 {
-        let [low, high, at] = [self.low, self.high, *value].map(|x| self.place(x));
-        start + ((at - low) / (high - low) * f64::from(end - start)).round() as i32
+        start + (self.share(*value) * f64::from(end - start)).round() as i32
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
@@ -85,7 +90,7 @@ impl Ranged for Scale {
                 1 => &[1.0, 2.0, 5.0],
                 _ => &[1.0],
             };
-            let step = (decades.len() / most).max(0) + 1;
+            let step = decades.len() / most + 1;
             let decades = decades.into_iter().step_by(step);
             return decades
                 .flat_map(|decade| digits.iter().map(move |digit| digit * 10_f64.powi(decade)))

@@ -6,8 +6,9 @@ use plotters::backend::SVGBackend;
 use plotters::chart::{ChartBuilder, ChartContext};
 use plotters::coord::{Shift, cartesian::Cartesian2d};
 use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
-use plotters::element::{Circle, PathElement, Text, TriangleMarker};
+use plotters::element::{Circle, EmptyElement, PathElement, Text, TriangleMarker};
 use plotters::series::{DashedLineSeries, LineSeries};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, IntoFont, RGBColor, WHITE};
 
 use crate::axis::{Scale, short};
@@ -129,9 +130,11 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Scale, Scale>>;
 type Outcome = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-const PANEL: (u32, u32) = (520, 440);
+/// Of a panel that has others beside it, and of one alone.
+const PANEL: (u32, u32) = (540, 440);
+const LONE_PANEL: (u32, u32) = (900, 620);
 const LEGEND_WIDTH: u32 = 210;
-const HEAD: i32 = 62;
+const HEAD: u32 = 62;
 const INK: RGBColor = RGBColor(40, 40, 40);
 const FAINT: RGBColor = RGBColor(225, 225, 225);
 
@@ -145,22 +148,29 @@ impl Figure {
             .map_err(|reason| format!("cannot write {}: {reason}", path.display()))
     }
 
+    #[expect(
+        clippy::cast_possible_wrap,
+        reason = "figures are a few thousand pixels wide"
+    )]
     fn draw(&self, path: &Path) -> Outcome {
-        let width = PANEL.0 * self.panels.len() as u32 + LEGEND_WIDTH;
-        let height = PANEL.1 + HEAD as u32;
+        let count = self.panels.len();
+        let (panel, columns) = if count == 1 {
+            (LONE_PANEL, 1)
+        } else {
+            (PANEL, 2)
+        };
+        let rows = count.div_ceil(columns);
+        let width = panel.0 * columns as u32 + LEGEND_WIDTH;
+        let height = panel.1 * rows as u32 + HEAD;
         let whole = SVGBackend::new(path, (width, height)).into_drawing_area();
         whole.fill(&WHITE)?;
         let title = ("sans-serif", 20).into_font().color(&INK);
         whole.draw(&Text::new(self.title.clone(), (14, 10), title))?;
         let small = ("sans-serif", 13).into_font().color(&INK);
         whole.draw(&Text::new(self.subtitle.clone(), (14, 38), small))?;
-        let (_, below) = whole.split_vertically(HEAD);
+        let (_, below) = whole.split_vertically(HEAD as i32);
         let (charts, legend) = below.split_horizontally((width - LEGEND_WIDTH) as i32);
-        for (panel, area) in self
-            .panels
-            .iter()
-            .zip(charts.split_evenly((1, self.panels.len())))
-        {
+        for (panel, area) in self.panels.iter().zip(charts.split_evenly((rows, columns))) {
             panel.draw(&area)?;
         }
         self.draw_legend(&legend)?;
@@ -270,7 +280,7 @@ impl Series {
             }
             Line::None => {}
         }
-        for point in &shown {
+        for (point, number) in shown.iter().zip(0..) {
             let at = (point.x, point.y);
             if let Some(range) = point.range {
                 let ends = range.map(|end| (point.x, y.nearest(end)));
@@ -285,9 +295,23 @@ impl Series {
                 |mark| area.draw(&mark),
             )?;
             if !point.label.is_empty() {
-                let font = ("sans-serif", 12).into_font().color(&INK);
-                let label = plotters::element::EmptyElement::at(at)
-                    + Text::new(point.label.clone(), (7, -6), font);
+                // To the side where there is room, above and below by turns.
+                let is_far = x.share(point.x) > 0.75;
+                let (side, dx) = if is_far {
+                    (HPos::Right, -8)
+                } else {
+                    (HPos::Left, 8)
+                };
+                let dy = if (number + self.look.color) % 2 == 0 {
+                    -7
+                } else {
+                    7
+                };
+                let font = ("sans-serif", 12)
+                    .into_font()
+                    .color(&INK)
+                    .pos(Pos::new(side, VPos::Center));
+                let label = EmptyElement::at(at) + Text::new(point.label.clone(), (dx, dy), font);
                 area.draw(&label)?;
             }
         }

@@ -53,15 +53,15 @@ impl Page {
             name,
             caption,
             sheet,
+            summary,
             figure,
         } = study;
-        let table = sheet.markdown();
+        let table = summary.as_ref().unwrap_or(sheet).markdown();
         println!("\n{}: {name}\n\n{table}", figure.title);
         let title = &figure.title;
         let _ = write!(
             self.studies,
-            "\n## {title}\n\n![{title}]({name}.svg)\n\n{caption}\n\n<details><summary>{name}.csv</summary>\n\n\
-             {table}\n\n</details>\n"
+            "\n## {title}\n\n![{title}]({name}.svg)\n\n{caption}\n\n{table}\n\n[{name}.csv]({name}.csv)\n"
         );
     }
 

@@ -4,7 +4,7 @@ use stochastic_light_culling::{Camera, Error, Ggx, Interleave, Roulette, Schlick
 
 use crate::baseline::fewer;
 use crate::frame::{Frame, GlossyLight, Lights, Reference, Slicing, Tiles};
-use crate::scene::{LitPoints, Scene, SurfaceBuffer, Tracer, trace_photons};
+use crate::scene::{LitPoints, Scene, Surface, SurfaceBuffer, Tracer, trace_photons};
 use crate::statistics::Mean;
 
 /// How much work the studies make of it.
@@ -23,7 +23,7 @@ pub struct Effort {
 
 impl Effort {
     pub const FULL: Self = Self {
-        size: [320, 180],
+        size: [480, 270],
         vpls: 16384,
         seeds: 64,
         times: 5,
@@ -78,7 +78,7 @@ impl<'a> Subject<'a> {
         let camera = scene.viewpoint.camera(effort.size).map_err(said)?;
         let tracer = Tracer::new(&scene.mesh);
         let surfaces = SurfaceBuffer::new(&tracer, &camera, effort.size);
-        if surfaces.surfaces.iter().all(|surface| surface.is_sky()) {
+        if surfaces.surfaces.iter().all(Surface::is_sky) {
             return Err(format!("scene {name} has no geometry in view"));
         }
         let subject = Self {

@@ -79,6 +79,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
         caption: "Each method has the δ with which it takes as long as the paper's (the spheroid, tiles of \
                   16×16 pixels, the box test) with δ = 0.001. Lower is better; bars are 95 % confidence.",
         sheet,
+        summary: None,
         figure: Figure {
             title: "Error in equal time".into(),
             subtitle: format!(

@@ -80,6 +80,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
                   work and more noise, which the denoiser takes away as long as its window holds all of \
                   the w×w pixels.",
         sheet,
+        summary: None,
         figure: Figure {
             title: "Interleaving, with and without denoising".into(),
             subtitle: of_frames(

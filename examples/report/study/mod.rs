@@ -21,6 +21,8 @@ pub struct Study {
     /// What the figure shows and how it is read, in a sentence or two.
     pub caption: &'static str,
     pub sheet: Sheet,
+    /// What people read of it, if it is long.
+    pub summary: Option<Sheet>,
     pub figure: Figure,
 }
 

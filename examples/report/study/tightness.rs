@@ -11,6 +11,7 @@ use crate::figure::{Axis, Figure, Line, Look, Panel, Point, Series};
 use crate::frame::BoundKind;
 use crate::method::Method;
 use crate::sheet::Sheet;
+use crate::statistics::{Mean, median};
 use crate::subject::Effort;
 use crate::tightness::{DEGREES, DIELECTRICS, METALS, Place, ROUGHNESSES, Volumes, grid, volume};
 
@@ -25,6 +26,13 @@ pub fn make(effort: &Effort, done: &dyn Fn()) -> Study {
         "enclosing",
         "sphere",
     ]);
+    let mut summary = Sheet::new(&[
+        "lobes",
+        "bound",
+        "ns",
+        "over_attainable_mean",
+        "over_attainable_most",
+    ]);
     let mut panels = Vec::new();
     for (name, reflectances) in [
         ("metals, F0 0.5 to 1", &METALS[..]),
@@ -36,12 +44,7 @@ pub fn make(effort: &Effort, done: &dyn Fn()) -> Study {
             .par_iter()
             .map(|place| (*place, place.measure()))
             .collect();
-        let mut ratios: Vec<(BoundKind, Vec<f64>)> =
-            BoundKind::ALL.map(|bound| (bound, Vec::new())).into();
         for (place, volumes) in &measured {
-            for (bound, ratios) in &mut ratios {
-                ratios.push(over_spheroid(*bound, *place) / volumes.attainable);
-            }
             sheet.push([
                 place.roughness.into(),
                 place.degrees.into(),
@@ -53,38 +56,51 @@ pub fn make(effort: &Effort, done: &dyn Fn()) -> Study {
                 over_spheroid(BoundKind::Sphere, *place).into(),
             ]);
         }
-        let lobes: Vec<GgxLobe<Schlick>> = measured.iter().map(|(place, _)| place.lobe()).collect();
-        let series = ratios.into_iter().map(|(bound, mut ratios)| {
-            ratios.sort_by(f64::total_cmp);
-            let middle = ratios[ratios.len() / 2];
-            let ends = [ratios[0], ratios[ratios.len() - 1]];
+        let lobes: Vec<GgxLobe<Schlick>> = places.iter().map(|place| place.lobe()).collect();
+        let mut series = Vec::new();
+        for bound in BoundKind::ALL {
+            let ratio = |(place, volumes): &(Place, Volumes)| {
+                over_spheroid(bound, *place) / volumes.attainable
+            };
+            let ratios: Vec<f64> = measured.iter().map(ratio).collect();
+            let [least, most] = [f64::min, f64::max]
+                .map(|pick| ratios.iter().copied().reduce(pick).unwrap_or(f64::NAN));
             let ns = nanoseconds(bound, &lobes, effort.is_quick);
-            Series {
+            summary.push([
+                name.into(),
+                bound.name().into(),
+                ns.into(),
+                Mean::of(&ratios).mean.into(),
+                most.into(),
+            ]);
+            let look = Method::Culled {
+                bound,
+                refined: false,
+            }
+            .look();
+            let point = Point::new(ns, median(&ratios)).within([least, most]);
+            series.push(Series {
                 name: bound.name().into(),
                 look: Look {
                     line: Line::None,
-                    ..Method::Culled {
-                        bound,
-                        refined: false,
-                    }
-                    .look()
+                    ..look
                 },
-                points: vec![Point::new(ns, middle).within(ends).labelled(bound.name())],
-            }
-        });
+                points: vec![point.labelled(bound.name())],
+            });
+        }
         panels.push(Panel {
             title: name.into(),
             x: Axis::log("ns per light"),
             y: Axis::log("volume over that of the smallest ellipsoid"),
-            series: series.collect(),
+            series,
         });
     }
     done();
     Study {
         name: "tightness",
-        caption: "The middle of all lobes of the grid, and bars from the least to the greatest. In the table, \
-                  volumes over that of the paper's spheroid.",
+        caption: "The middle of all lobes of the grid, and bars from the least to the greatest.",
         sheet,
+        summary: Some(summary),
         figure: Figure {
             title: "How tight the bounds are, against their cost".into(),
             subtitle: format!(

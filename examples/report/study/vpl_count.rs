@@ -96,6 +96,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
         caption: "Lights become dimmer as they become more, so that with the same δ a pixel evaluates about \
                   as many: what grows is the work of culling.",
         sheet,
+        summary: None,
         figure: Figure {
             title: "Time against the number of lights".into(),
             subtitle: of_frames(
