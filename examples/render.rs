@@ -14,16 +14,15 @@ mod frame;
 mod output;
 mod scene;
 
+use std::io;
 use std::io::Write;
-use std::path::Path;
 use std::process::ExitCode;
-use std::{fs, io};
 
 use stochastic_light_culling::{Camera, Error, Interleave, TileGrid, glam::Vec3};
 
 use arguments::{Arguments, ReferenceKind};
-use frame::{Frame, Lights, Measured, Reference, Tiles, Tiling, timed};
-use output::{Exposure, Request, Results, Row, progress};
+use frame::{Frame, Lights, Measured, Reference, Slicing, Tiles, Tiling, timed};
+use output::{Exposure, Request, Results, Row, make_folder, progress};
 use scene::{LitPoints, Scene, SurfaceBuffer, Tracer};
 
 fn main() -> ExitCode {
@@ -52,8 +51,15 @@ fn render(arguments: &Arguments) -> Result<(), String> {
     });
     let points = points.map_err(said)?;
     let lights = Lights::new(&points, &interleave, arguments.seed).map_err(said)?;
-    let [tiles, pixels] =
-        [arguments.tile, 1].map(|size| Tiles::new(&surfaces, &camera, &interleave, size));
+    let [tiles, pixels] = [arguments.tile, 1].map(|size| {
+        Tiles::new(
+            &surfaces,
+            &camera,
+            &interleave,
+            size,
+            Slicing::ModifiedHalfZ,
+        )
+    });
     let (tiles, pixels) = (tiles.map_err(said)?, pixels.map_err(said)?);
     let tilings =
         [(&tiles, false), (&pixels, true)].map(|(tiles, refined)| Tiling { tiles, refined });
@@ -106,15 +112,6 @@ fn render(arguments: &Arguments) -> Result<(), String> {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         outcome => outcome.map_err(|error| format!("cannot report: {error}")),
     }
-}
-
-/// Makes sure that pictures can be written to `folder`.
-fn make_folder(folder: &Path) -> Result<(), String> {
-    let probe = folder.join(format!(".probe.{}.part", std::process::id()));
-    fs::create_dir_all(folder)
-        .and_then(|()| fs::write(&probe, []))
-        .and_then(|()| fs::remove_file(&probe))
-        .map_err(|error| format!("cannot write to {}: {error}", folder.display()))
 }
 
 /// The frame by its glossy lights, with each bound asked for, and by its diffuse lights.

@@ -1,12 +1,11 @@
 //! The example `engine`: its frames allocate nothing, and it sees the same in views of either handedness.
 #![cfg(feature = "cull")]
 
+mod command;
 #[path = "../examples/engine/light_pass.rs"]
 mod light_pass;
 #[path = "../examples/engine/world.rs"]
 mod world;
-
-use std::process::{Command, Output};
 
 use light_pass::LightPass;
 use world::{Handedness, World, lights};
@@ -94,18 +93,6 @@ fn the_mean_over_frames_is_what_all_lights_give() {
     assert!((mean - exact).abs() < 5.0 * deviation, "{mean}, {exact}");
 }
 
-/// Runs the example that `cargo test` has built beside this test's own executable. With `--test`
-/// cargo leaves it out, and it must be built before: `cargo build --profile test --example engine`.
-fn run(arguments: &[&str]) -> Output {
-    let test = std::env::current_exe().expect("a test knows where it is");
-    let profile = test.ancestors().nth(2).expect("tests lie in deps/");
-    let name = format!("engine{}", std::env::consts::EXE_SUFFIX);
-    Command::new(profile.join("examples").join(name))
-        .args(arguments)
-        .output()
-        .expect("first run `cargo build --profile test --example engine`, or all of `cargo test`")
-}
-
 #[test]
 fn prints_a_line_for_each_frame() {
     for arguments in [
@@ -113,7 +100,7 @@ fn prints_a_line_for_each_frame() {
         &["--frames=3", "--left-handed"],
         &["--frames=3", "--lights=0"],
     ] {
-        let output = run(arguments);
+        let output = command::run("engine", arguments);
         assert!(output.status.success() && output.stderr.is_empty());
         let table = String::from_utf8(output.stdout).expect("tables are UTF-8");
         assert_eq!(table.lines().count(), 4, "{table}");
@@ -129,11 +116,6 @@ fn refuses_what_no_engine_has() {
         ("--delta=NaN", "δ is NaN"),
         ("--right-handed", "--right-handed"),
     ] {
-        let output = run(&[argument]);
-        let error = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{argument}: {error}");
-        assert_eq!(error.lines().count(), 1, "{argument}: {error}");
-        assert!(error.contains(reason), "{argument}: {error}");
-        assert!(output.stdout.is_empty(), "{argument}");
+        command::assert_refusal(&command::run("engine", [argument]), reason);
     }
 }

@@ -1,55 +1,29 @@
 //! The example `render` as a command: what it refuses, and what it leaves behind.
 
+mod command;
+
 use std::ffi::OsStr;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::PathBuf;
+use std::process::Output;
 
 use serde_json::Value;
 
-/// Runs the example that `cargo test` has built beside this test's own executable. With `--test`
-/// cargo leaves it out, and it must be built before: `cargo build --profile test --example render`.
 fn render<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Output {
-    let test = std::env::current_exe().expect("a test knows where it is");
-    let profile = test.ancestors().nth(2).expect("tests lie in deps/");
-    let name = format!("render{}", std::env::consts::EXE_SUFFIX);
-    Command::new(profile.join("examples").join(name))
-        .args(arguments)
-        .output()
-        .expect("first run `cargo build --profile test --example render`, or all of `cargo test`")
+    command::run("render", arguments)
 }
 
-/// A path for this test alone, with nothing there.
-fn fresh_path(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join("render_command")
-        .join(name);
-    if path.exists() {
-        fs::remove_dir_all(&path).expect("leftovers can be removed");
-    }
-    path
+fn fresh_path(test: &str) -> PathBuf {
+    command::fresh_path("render", test)
 }
 
-fn fresh_folder(name: &str) -> PathBuf {
-    let folder = fresh_path(name);
-    fs::create_dir_all(&folder).expect("a folder can be made");
-    folder
+fn fresh_folder(test: &str) -> PathBuf {
+    command::fresh_folder("render", test)
 }
 
-/// Asserts that `arguments` are refused with status 2 and one line that contains `reason`, and that
-/// nothing is written.
 #[track_caller]
 fn assert_refused(test: &str, arguments: &[&str], reason: &str) {
-    let out = fresh_path(test);
-    let where_to = [OsStr::new("--out"), out.as_os_str()];
-    let output = render(arguments.iter().map(OsStr::new).chain(where_to));
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
-    assert_eq!(error.lines().count(), 1, "{arguments:?}: {error}");
-    assert!(error.starts_with("error: "), "{arguments:?}: {error}");
-    assert!(error.contains(reason), "{arguments:?}: {error}");
-    assert!(output.stdout.is_empty(), "{arguments:?}");
-    assert!(!out.exists(), "{arguments:?} wrote to {}", out.display());
+    command::assert_refused("render", test, arguments, reason);
 }
 
 #[test]
@@ -155,18 +129,7 @@ fn refuses_files_that_are_no_scene() {
 
 #[test]
 fn refuses_a_folder_that_is_a_file() {
-    let folder = fresh_folder("taken");
-    let file = folder.join("file");
-    fs::write(&file, "here first").expect("a file can be written");
-    let file_name = file.to_str().expect("the path is UTF-8");
-    for out in [file_name, &format!("{file_name}/below")] {
-        let output = render(["--vpls", "64", "--size", "32x24", "--out", out]);
-        let error = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{error}");
-        assert_eq!(error.lines().count(), 1, "{error}");
-        assert!(error.contains(file_name), "{error}");
-    }
-    assert_eq!(fs::read(&file).expect("still there"), b"here first");
+    command::assert_leaves_files_alone("render", &["--vpls", "64", "--size", "32x24"]);
 }
 
 #[test]

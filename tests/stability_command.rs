@@ -1,26 +1,12 @@
 //! The example `stability` as a command: its numbers, and what it refuses.
 
-use std::process::{Command, Output};
+mod command;
 
 use serde_json::Value;
 
-/// Runs the example that `cargo test` has built beside this test's own executable. With `--test`
-/// cargo leaves it out, and it must be built before: `cargo build --profile test --example stability`.
-fn stability(arguments: &[&str]) -> Output {
-    let test = std::env::current_exe().expect("a test knows where it is");
-    let profile = test.ancestors().nth(2).expect("tests lie in deps/");
-    let name = format!("stability{}", std::env::consts::EXE_SUFFIX);
-    Command::new(profile.join("examples").join(name))
-        .args(arguments)
-        .output()
-        .expect(
-            "first run `cargo build --profile test --example stability`, or all of `cargo test`",
-        )
-}
-
 #[test]
 fn prints_one_object_and_loses_no_light() {
-    let output = stability(&["--json", "--cases", "20000"]);
+    let output = command::run("stability", ["--json", "--cases", "20000"]);
     assert!(output.status.success());
     let text = String::from_utf8(output.stdout).expect("JSON is UTF-8");
     assert_eq!(text.lines().count(), 1);
@@ -67,11 +53,6 @@ fn refuses_what_it_does_not_know() {
         "--alpha=1",
         "extra",
     ] {
-        let output = stability(&[argument]);
-        let error = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{argument}: {error}");
-        assert_eq!(error.lines().count(), 1, "{argument}: {error}");
-        assert!(error.starts_with("error: "), "{argument}: {error}");
-        assert!(output.stdout.is_empty(), "{argument}");
+        command::assert_refusal(&command::run("stability", [argument]), "");
     }
 }

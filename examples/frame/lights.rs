@@ -4,7 +4,7 @@ use stochastic_light_culling::{
     Direction, Error, GgxLobe, Interleave, LambertLobe, Lobe, Schlick, Vpl, Xi, glam::Vec3,
 };
 
-use crate::scene::{LitPoint, LitPoints};
+use crate::scene::{LitPoint, LitPoints, Surface};
 
 /// A virtual point light in one frame.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +16,14 @@ pub struct Light<L> {
     /// Each channel's flux over that of the brightest.
     pub tint: Vec3,
     pub xi: Xi,
+}
+
+impl<L: Lobe> Light<L> {
+    /// Whether `surface` is where this light sends nothing.
+    #[inline]
+    pub fn has_back_to(&self, surface: &Surface) -> bool {
+        self.normal.dot(surface.position - self.vpl.position()) <= 0.0
+    }
 }
 
 /// All lights of a frame.

@@ -79,7 +79,11 @@ fn measure<L: Lobe + Sync, T: BatchShape + Send + Sync>(
         cullers.cull(tiling.tiles, &batches)?;
         let (culled, cull_ms) = timed(|| cullers.cull(tiling.tiles, &batches));
         culled?;
-        let (shaded, shade_ms) = timed(|| shade(frame, tiling, lights, &cullers.lists, &done));
+        let list_of = |pixel, depth| {
+            let place = tiling.tiles.place_of(pixel, depth)?;
+            Some(cullers.lists[place.subregion].of(place.tile, place.interval))
+        };
+        let (shaded, shade_ms) = timed(|| shade(frame, tiling.refined, lights, list_of, &done));
         Ok(Measured {
             bound,
             refined: tiling.refined,

@@ -1,5 +1,6 @@
 //! One frame: lights and their ranges, bounds, lists of lights for tiles, shading by those lists, and
 //! what to compare it with.
+#![allow(dead_code, unused_imports, reason = "each example uses a part")]
 
 mod bounds;
 mod cull;
@@ -11,14 +12,14 @@ mod reference;
 mod shade;
 mod tiles;
 
-pub use bounds::BoundKind;
+pub use bounds::{BoundKind, GlossyLight};
 pub use denoise::cross_bilateral;
 pub use lights::{Light, Lights};
 pub use measure::{Measured, Tiling, measure_diffuse, measure_glossy, timed};
 pub use metrics::{mean_over_surfaces, rmse};
 pub use reference::Reference;
-pub use shade::Shaded;
-pub use tiles::Tiles;
+pub use shade::{Path, Shaded, Sums, shade};
+pub use tiles::{Slicing, Subregion, Tiles};
 
 use stochastic_light_culling::{Interleave, Roulette};
 

@@ -1,9 +1,9 @@
-//! Irradiance of each pixel from the lights in its tile's list.
+//! Irradiance of each pixel from the lights in its list.
 
 use rayon::prelude::*;
-use stochastic_light_culling::{LightLists, Lobe, glam::Vec3};
+use stochastic_light_culling::{Lobe, glam::Vec3};
 
-use super::{Frame, Light, Tiling};
+use super::{Frame, Light};
 use crate::scene::Surface;
 
 /// For each pixel of an image, row by row: irradiance, the lights whose lobe was evaluated, and those
@@ -16,6 +16,21 @@ pub struct Shaded {
 }
 
 impl Shaded {
+    /// An image of `count` pixels without light.
+    pub fn black(count: usize) -> Self {
+        Self {
+            irradiance: vec![Vec3::ZERO; count],
+            evaluated: vec![0; count],
+            contributing: vec![0; count],
+        }
+    }
+
+    pub fn set(&mut self, pixel: usize, sums: &Sums) {
+        self.irradiance[pixel] = sums.irradiance;
+        self.evaluated[pixel] = sums.evaluated;
+        self.contributing[pixel] = sums.contributing;
+    }
+
     /// At how many pixels the irradiance or the lights accepted differ in any bit.
     pub fn pixels_unlike(&self, other: &Self) -> usize {
         let bits = |irradiance: &Vec3| irradiance.to_array().map(f32::to_bits);
@@ -30,81 +45,69 @@ impl Shaded {
 
 /// One pixel's sums.
 #[derive(Clone, Copy, Default)]
-struct Sums {
-    irradiance: Vec3,
-    evaluated: u32,
-    contributing: u32,
+pub struct Sums {
+    pub irradiance: Vec3,
+    pub evaluated: u32,
+    pub contributing: u32,
 }
 
-/// Shades all pixels by the lists of their tiles; calls `done` after each row of a subregion.
-pub fn shade<L: Lobe + Sync>(
+impl Sums {
+    /// Adds what `light` sends to `surface`, if that accepts it.
+    ///
+    /// Sums over the same lights in the same order are the same, whatever else was passed over.
+    #[inline]
+    pub fn add<L: Lobe>(&mut self, frame: &Frame, light: &Light<L>, surface: &Surface) {
+        self.evaluated += 1;
+        let path = Path::new(light, surface, frame.least_distance_squared);
+        let (intensity, distance_squared) = (path.intensity, path.distance_squared);
+        let radiance = (frame.roulette).estimate(intensity, distance_squared, light.xi);
+        // Zero where the light is not accepted.
+        self.contributing += u32::from(radiance > 0.0);
+        self.irradiance += radiance * path.cosine * light.tint;
+    }
+}
+
+/// Shades all pixels by the lists that `list_of` gives for a pixel and the depth of its surface; calls
+/// `done` after each row of a subregion.
+///
+/// If `refined`, lights that lie with their backs to the surface are passed over before their lobe is
+/// evaluated, in which they are zero.
+pub fn shade<'a, L: Lobe + Sync>(
     frame: &Frame,
-    tiling: &Tiling,
+    refined: bool,
     lights: &[Light<L>],
-    lists: &[LightLists],
+    list_of: impl Fn([u32; 2], f32) -> Option<&'a [u32]> + Sync,
     done: impl Fn() + Sync,
 ) -> Shaded {
-    let shade_pixel = |pixel: &[u32; 2]| {
-        let surface = frame.surfaces.at(*pixel);
-        let place = tiling.tiles.place_of(*pixel, surface.depth)?;
-        let list = lists[place.subregion].of(place.tile, place.interval);
-        Some(sums(frame, lights, list, surface, tiling.refined))
+    let shade_pixel = |pixel: [u32; 2]| {
+        let surface = frame.surfaces.at(pixel);
+        let mut sums = Sums::default();
+        for number in list_of(pixel, surface.depth)? {
+            let light = &lights[*number as usize];
+            if !(refined && light.has_back_to(surface)) {
+                sums.add(frame, light, surface);
+            }
+        }
+        Some(sums)
     };
     // Neighbours in a subregion share most of their lights; those in the image, none.
     let rows = frame.interleaved_rows();
     let shaded: Vec<Vec<Option<Sums>>> = rows
         .par_iter()
         .map(|row| {
-            let sums = row.iter().map(shade_pixel).collect();
+            let sums = row.iter().map(|pixel| shade_pixel(*pixel)).collect();
             done();
             sums
         })
         .collect();
 
-    let count = frame.surfaces.surfaces.len();
-    let mut image = Shaded {
-        irradiance: vec![Vec3::ZERO; count],
-        evaluated: vec![0; count],
-        contributing: vec![0; count],
-    };
+    let mut image = Shaded::black(frame.surfaces.surfaces.len());
     for (pixel, sums) in rows.iter().flatten().zip(shaded.iter().flatten()) {
         if let Some(sums) = sums {
-            let index = frame.surfaces.index(*pixel);
-            image.irradiance[index] = sums.irradiance;
-            image.evaluated[index] = sums.evaluated;
-            image.contributing[index] = sums.contributing;
+            image.set(frame.surfaces.index(*pixel), sums);
         }
     }
     image
-}
-
-/// If `refined`, lights that lie with their backs to the surface are passed over before their lobe is
-/// evaluated, in which they are zero.
-///
-/// In the order of the list, which is the same for every bound: the sums are then the same too.
-fn sums<L: Lobe>(
-    frame: &Frame,
-    lights: &[Light<L>],
-    list: &[u32],
-    surface: &Surface,
-    refined: bool,
-) -> Sums {
-    let mut sums = Sums::default();
-    for number in list {
-        let light = &lights[*number as usize];
-        let to_surface = surface.position - light.vpl.position();
-        if refined && light.normal.dot(to_surface) <= 0.0 {
-            continue;
-        }
-        sums.evaluated += 1;
-        let path = Path::new(light, surface, frame.least_distance_squared);
-        let (intensity, distance_squared) = (path.intensity, path.distance_squared);
-        let radiance = (frame.roulette).estimate(intensity, distance_squared, light.xi);
-        // Zero where the light is not accepted.
-        sums.contributing += u32::from(radiance > 0.0);
-        sums.irradiance += radiance * path.cosine * light.tint;
-    }
-    sums
 }
 
 /// The way from a light to a surface.

@@ -5,6 +5,17 @@ use stochastic_light_culling::{Camera, DepthInterval, Error, Interleave, TileDep
 
 use crate::scene::SurfaceBuffer;
 
+/// How a tile's surfaces are parted by depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slicing {
+    /// One interval around all of them.
+    Whole,
+    HalfZ,
+    ModifiedHalfZ,
+    /// So many exponential slices of the view, of which a tile has those with surfaces.
+    Slices(u32),
+}
+
 /// Tiles of one size.
 pub struct Tiles {
     interleave: Interleave,
@@ -13,8 +24,63 @@ pub struct Tiles {
 
 /// A small image of the whole view.
 pub struct Subregion {
-    grid: TileGrid,
+    pub grid: TileGrid,
     pub depths: TileDepths,
+    /// Those that `depths` has of each tile, row by row.
+    intervals: Vec<Vec<Option<DepthInterval>>>,
+}
+
+impl Subregion {
+    pub fn interval(&self, [x, y]: [u32; 2], interval: u32) -> Option<DepthInterval> {
+        let tile = y * self.grid.size()[0] + x;
+        *self.intervals[tile as usize].get(interval as usize)?
+    }
+}
+
+/// A [`Slicing`] of a view.
+enum Parting {
+    Own(Slicing),
+    /// What all tiles share.
+    Slices(Vec<DepthInterval>),
+}
+
+impl Parting {
+    fn new(slicing: Slicing, surfaces: &SurfaceBuffer) -> Self {
+        let Slicing::Slices(count) = slicing else {
+            return Self::Own(slicing);
+        };
+        let depths = surfaces.surfaces.iter().map(|surface| surface.depth);
+        let whole = DepthInterval::around(depths);
+        Self::Slices(whole.map_or_else(Vec::new, |whole| whole.exponential_slices(count).collect()))
+    }
+
+    fn intervals(&self) -> u32 {
+        match self {
+            Self::Own(Slicing::Whole) => 1,
+            Self::Own(_) => 2,
+            Self::Slices(slices) => slices.len().max(1) as u32,
+        }
+    }
+
+    fn part(&self, depths: impl Iterator<Item = f32> + Clone) -> Vec<Option<DepthInterval>> {
+        match self {
+            Self::Own(Slicing::HalfZ) => DepthInterval::half_z(depths)
+                .map_or_else(Vec::new, |halves| halves.map(Some).to_vec()),
+            Self::Own(Slicing::ModifiedHalfZ) => DepthInterval::modified_half_z(depths).to_vec(),
+            Self::Own(_) => vec![DepthInterval::around(depths)],
+            Self::Slices(slices) => {
+                let has_surfaces = |slice: &DepthInterval| {
+                    depths
+                        .clone()
+                        .any(|depth| slice.near() <= depth && depth <= slice.far())
+                };
+                slices
+                    .iter()
+                    .map(|slice| has_surfaces(slice).then_some(*slice))
+                    .collect()
+            }
+        }
+    }
 }
 
 /// Where a surface is looked up.
@@ -25,26 +91,35 @@ pub struct Place {
 }
 
 impl Tiles {
-    /// Tiles of `tile_size`² pixels of their subregion, each with its surfaces parted by depth.
+    /// Tiles of `tile_size`² pixels of their subregion, each with its surfaces parted by `slicing`.
     pub fn new(
         surfaces: &SurfaceBuffer,
         camera: &Camera,
         interleave: &Interleave,
         tile_size: u32,
+        slicing: Slicing,
     ) -> Result<Self, Error> {
+        let slicing = Parting::new(slicing, surfaces);
         let subregion = |subregion| {
             let grid = TileGrid::new(interleave.subregion_size(subregion), tile_size)?;
-            let mut depths = TileDepths::new(grid.size(), 2, |tile| {
+            let mut depths = TileDepths::new(grid.size(), slicing.intervals(), |tile| {
                 let around = interleave.join_pixels(subregion, grid.pixels(tile));
                 camera.tile_rectangle(surfaces.image_size, around)
             })?;
+            let mut intervals = Vec::new();
             for tile in grid.tiles() {
                 let pixels = grid.pixels(tile).pixels();
                 let seen = pixels.map(|pixel| interleave.join_pixel(subregion, pixel));
                 let seen = seen.map(|pixel| surfaces.at(pixel).depth);
-                depths.set(tile, DepthInterval::modified_half_z(seen));
+                let parts = slicing.part(seen);
+                depths.set(tile, parts.iter().copied());
+                intervals.push(parts);
             }
-            Ok(Subregion { grid, depths })
+            Ok(Subregion {
+                grid,
+                depths,
+                intervals,
+            })
         };
         Ok(Self {
             interleave: *interleave,
@@ -63,7 +138,7 @@ impl Tiles {
     /// sky.
     pub fn place_of(&self, pixel: [u32; 2], depth: f32) -> Option<Place> {
         let (subregion, local) = self.interleave.split_pixel(pixel);
-        let Subregion { grid, depths } = &self.subregions[subregion as usize];
+        let Subregion { grid, depths, .. } = &self.subregions[subregion as usize];
         let tile = grid.tile_of(local);
         Some(Place {
             subregion: subregion as usize,

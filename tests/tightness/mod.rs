@@ -48,20 +48,25 @@ pub fn grid(reflectances: &[f32]) -> Vec<Place> {
 }
 
 impl Place {
-    pub fn measure(self) -> Volumes {
+    pub fn lobe(self) -> GgxLobe<Schlick> {
         let angle = self.degrees.to_radians();
         let incoming =
             Direction::new(Vec3::new(angle.sin(), 0.0, angle.cos())).expect("a unit vector");
-        let lobe = GgxLobe::new(
+        GgxLobe::new(
             Ggx::new(self.roughness).expect("in range"),
             Schlick::new(self.f0).expect("in range"),
             Direction::Z,
             incoming,
-        );
+        )
+    }
+
+    pub fn measure(self) -> Volumes {
+        let lobe = self.lobe();
         let spheroid = volume(&lobe.unit_bound().into());
+        let incoming = Vector::from(*lobe.incoming()).unit();
         Volumes {
             tight: volume(&lobe.tight_bound()) / spheroid,
-            attainable: self.smallest(Vector::from(*incoming).unit()) / spheroid,
+            attainable: self.smallest(incoming) / spheroid,
         }
     }
 

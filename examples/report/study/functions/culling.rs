@@ -1,0 +1,177 @@
+//! Bounds, stretches and tests of tiles.
+
+use stochastic_light_culling::{
+    Bound, Bounded, Camera, CameraSphere, DepthInterval, Ellipsoid, GgxLobe, PixelRectangle,
+    Roulette, Schlick, Sphere, Stretch, TileTest, Xi, glam::Vec3,
+};
+
+use super::{Bench, Case, METAL, off};
+use crate::reference::{Fresnel, Frustum, Shape, Vector};
+
+pub fn bounds(bench: &mut Bench) {
+    let kind = "bounds";
+    let metal = Schlick::new(METAL).expect("in range");
+    let exact = |case: &Case| case.radius(Fresnel::Schlick(METAL));
+    bench.add(
+        (kind, "sphere at light"),
+        |case| case.lobe(metal),
+        |lobe| lobe.unit_bound().sphere_at_focus(),
+        |case, sphere: Sphere| off(sphere.radius(), exact(case) / f64::from(case.roughness)),
+    );
+    bench.add(
+        (kind, "enclosing sphere"),
+        |case| case.lobe(metal),
+        |lobe| lobe.unit_bound().enclosing_sphere(),
+        |case, sphere: Sphere| {
+            let alpha = f64::from(case.roughness);
+            off(
+                sphere.radius(),
+                exact(case) * (1.0 + alpha * alpha) / (2.0 * alpha),
+            )
+        },
+    );
+    bench.add(
+        (kind, "spheroid"),
+        |case| case.lobe(metal),
+        GgxLobe::unit_bound,
+        |case, spheroid| off(spheroid.radius(), exact(case)),
+    );
+    bench.add(
+        (kind, "scale r, roulette"),
+        |case| Xi::hashed(case.number, 0, 2),
+        |xi| Roulette::new(1e-3).expect("in range").scale(2.0, *xi),
+        |case, scale| {
+            let xi = Xi::hashed(case.number, 0, 2).get();
+            off(scale, (2.0 / (f64::from(1e-3_f32) * f64::from(xi))).sqrt())
+        },
+    );
+    stretch(bench, "stretch of spheroid", |lobe| {
+        lobe.unit_bound().into()
+    });
+    stretch(bench, "triaxial + stretch", GgxLobe::triaxial_bound);
+    stretch(bench, "tight + stretch", GgxLobe::tight_bound);
+}
+
+fn camera() -> Camera {
+    let eye = Vec3::new(0.0, 5.0, 25.0);
+    Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 1.0, 16.0 / 9.0, 0.1..100.0).expect("in range")
+}
+
+/// Makes the stretch of a bound, and checks where it takes the ends of the axes.
+fn stretch(
+    bench: &mut Bench,
+    name: &'static str,
+    unit: impl Fn(&GgxLobe<Schlick>) -> Ellipsoid + Copy,
+) {
+    let camera = camera();
+    let metal = Schlick::new(METAL).expect("in range");
+    let placed =
+        move |(case, lobe): &(Case, GgxLobe<Schlick>)| unit(lobe).placed(case.position, 1.0);
+    bench.add(
+        ("bounds", name),
+        |case| (*case, case.lobe(metal)),
+        |input| (placed(input), Stretch::new(&placed(input), &camera)),
+        |_, (ellipsoid, stretch)| {
+            let Some(stretch) = stretch else {
+                return f64::NAN;
+            };
+            let shape = Shape::from(ellipsoid);
+            let to_camera = camera.rotation();
+            let rows = [to_camera.row(0), to_camera.row(1), to_camera.row(2)].map(Vector::from);
+            let eye = Vector::from(camera.to_world_space(Vec3::ZERO));
+            let columns = [
+                stretch.matrix().x_axis,
+                stretch.matrix().y_axis,
+                stretch.matrix().z_axis,
+            ];
+            let columns = columns.map(Vector::from);
+            let off_sphere = |unit: [f64; 3]| {
+                let seen = shape.point(Vector(unit)) - eye;
+                let seen = rows.map(|row| row.dot(seen));
+                let image = columns[0] * seen[0] + columns[1] * seen[1] + columns[2] * seen[2]
+                    - Vector::from(stretch.center());
+                (image.length() - 1.0).abs()
+            };
+            let axes = (0..3).flat_map(|i| [1.0, -1.0].map(|end| (i, end)));
+            let ends = axes.map(|(i, end)| {
+                let mut unit = [0.0; 3];
+                unit[i] = end;
+                off_sphere(unit)
+            });
+            ends.fold(0.0, f64::max)
+        },
+    );
+}
+
+pub fn tests(bench: &mut Bench) {
+    let camera = camera();
+    let size = [640, 360];
+    let tile = move |case: &Case| {
+        let [x, y] = [1, 2].map(|what| Xi::hashed(case.number, what, 3).get());
+        let min = [(x * 39.0) as u32 * 16, (y * 21.0) as u32 * 16];
+        let rectangle = camera.tile_rectangle(
+            size,
+            PixelRectangle {
+                min,
+                max: min.map(|pixel| pixel + 16),
+            },
+        );
+        let near = 10.0 + 25.0 * Xi::hashed(case.number, 3, 3).get();
+        (
+            rectangle,
+            DepthInterval::new(near, near + 2.0).expect("in range"),
+        )
+    };
+    let metal = Schlick::new(METAL).expect("in range");
+    let stretched = move |case: &Case| {
+        let unit = case.lobe(metal).tight_bound();
+        let scale = 30.0 * case.roughness.max(0.03);
+        let stretch = Stretch::new(&unit.placed(case.position, scale), &camera);
+        stretch.map(|stretch| (stretch, tile(case)))
+    };
+    let in_vain = |share: f64| move |_: &Case, _: bool| share;
+    let cases: Vec<_> = bench.cases.iter().filter_map(stretched).collect();
+    let kept = |test: &dyn Fn(&Stretch, &(_, _)) -> bool| {
+        cases
+            .iter()
+            .filter(|(stretch, tile)| test(stretch, tile))
+            .count() as f64
+    };
+    let touched = kept(&|stretch, (rectangle, depths)| {
+        let image = Frustum::new(stretch.matrix(), rectangle, depths);
+        image.distance(Vector::from(stretch.center())) < 1.0
+    });
+    let by_box = kept(&|stretch, (rectangle, depths)| stretch.touches(rectangle, depths));
+    let exactly = kept(&|stretch, (rectangle, depths)| stretch.touches_exactly(rectangle, depths));
+    let share = |kept: f64| (kept - touched) / kept.max(1.0);
+    let input = move |case: &Case| (stretched(case).map(|(stretch, _)| stretch), tile(case));
+    bench.add(
+        ("tests", "box"),
+        input,
+        |(stretch, (rectangle, depths))| {
+            stretch.is_some_and(|stretch| stretch.touches(rectangle, depths))
+        },
+        in_vain(share(by_box)),
+    );
+    bench.add(
+        ("tests", "exact, after box"),
+        input,
+        |(stretch, (rectangle, depths))| {
+            stretch.is_some_and(|stretch| {
+                stretch.touches(rectangle, depths) && stretch.touches_exactly(rectangle, depths)
+            })
+        },
+        in_vain(share(exactly)),
+    );
+    bench.add(
+        ("tests", "sphere"),
+        |case| {
+            let sphere = Sphere::new(case.position, 1.0).expect("in range");
+            (CameraSphere::new(&sphere, &camera), tile(case))
+        },
+        |(sphere, (rectangle, depths))| {
+            sphere.is_some_and(|sphere| sphere.touches(rectangle, depths))
+        },
+        |_, _| f64::NAN,
+    );
+}

@@ -1,0 +1,71 @@
+//! Examples run as commands.
+#![allow(dead_code, reason = "each test file uses a part")]
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// Runs the example that `cargo test` has built beside this test's own executable. With `--test`
+/// cargo leaves it out, and it must be built before: `cargo build --profile test --examples`.
+pub fn run<S: AsRef<OsStr>>(example: &str, arguments: impl IntoIterator<Item = S>) -> Output {
+    let test = std::env::current_exe().expect("a test knows where it is");
+    let profile = test.ancestors().nth(2).expect("tests lie in deps/");
+    let name = format!("{example}{}", std::env::consts::EXE_SUFFIX);
+    Command::new(profile.join("examples").join(name))
+        .args(arguments)
+        .output()
+        .expect("first run `cargo build --profile test --examples`, or all of `cargo test`")
+}
+
+/// A path for this test alone, with nothing there.
+pub fn fresh_path(example: &str, test: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join(example)
+        .join(test);
+    if path.exists() {
+        fs::remove_dir_all(&path).expect("leftovers can be removed");
+    }
+    path
+}
+
+pub fn fresh_folder(example: &str, test: &str) -> PathBuf {
+    let folder = fresh_path(example, test);
+    fs::create_dir_all(&folder).expect("a folder can be made");
+    folder
+}
+
+/// Asserts that `output` refuses with status 2 and one line that contains `reason`.
+#[track_caller]
+pub fn assert_refusal(output: &Output, reason: &str) {
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert_eq!(error.lines().count(), 1, "{error}");
+    assert!(error.starts_with("error: "), "{error}");
+    assert!(error.contains(reason), "{error}");
+    assert!(output.stdout.is_empty(), "{error}");
+}
+
+/// Asserts that `example` refuses `arguments` and writes nothing.
+#[track_caller]
+pub fn assert_refused(example: &str, test: &str, arguments: &[&str], reason: &str) {
+    let out = fresh_path(example, test);
+    let where_to = [OsStr::new("--out"), out.as_os_str()];
+    let output = run(example, arguments.iter().map(OsStr::new).chain(where_to));
+    assert_refusal(&output, reason);
+    assert!(!out.exists(), "{arguments:?} wrote to {}", out.display());
+}
+
+/// Asserts that `example` does not write to a folder that is a file, or below one.
+#[track_caller]
+pub fn assert_leaves_files_alone(example: &str, arguments: &[&str]) {
+    let folder = fresh_folder(example, "taken");
+    let file = folder.join("file");
+    fs::write(&file, "here first").expect("a file can be written");
+    let file_name = file.to_str().expect("the path is UTF-8");
+    for out in [file_name, &format!("{file_name}/below")] {
+        let output = run(example, arguments.iter().chain(&["--out", out]));
+        assert_refusal(&output, file_name);
+    }
+    assert_eq!(fs::read(&file).expect("still there"), b"here first");
+}

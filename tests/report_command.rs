@@ -1,0 +1,186 @@
+//! The example `report` as a command: what it refuses, and what it leaves behind.
+
+mod command;
+
+use std::collections::HashMap;
+use std::fs;
+
+use command::{assert_refused, fresh_folder, fresh_path, run};
+
+#[test]
+fn refuses_what_it_does_not_know() {
+    for (argument, reason) in [
+        ("--study=colour", "'colour'"),
+        ("--scene=no/such.obj", "no/such.obj"),
+        ("--seed=-1", "-1"),
+        ("--seeds=3", "--seeds"),
+        ("extra", "'extra'"),
+    ] {
+        assert_refused("report", "unknown", &["--quick", argument], reason);
+    }
+}
+
+#[test]
+fn refuses_scenes_without_glossy_lights_or_geometry() {
+    let folder = fresh_folder("report", "scenes");
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 0 1\nusemtl chalk\nf 1 3 2\n";
+    let chalk = "newmtl chalk\nKd 0.5 0.5 0.5\n";
+    for (name, text, reason) in [
+        ("empty.obj", "", "no triangles"),
+        ("chalk.obj", triangle, "no glossy lights"),
+    ] {
+        let path = folder.join(name);
+        fs::write(folder.join("chalk.mtl"), chalk).expect("a file can be written");
+        fs::write(&path, format!("mtllib chalk.mtl\n{text}")).expect("a file can be written");
+        let path = path.to_str().expect("the path is UTF-8");
+        assert_refused("report", "no_scene", &["--quick", "--scene", path], reason);
+    }
+}
+
+#[test]
+fn refuses_a_folder_that_is_a_file() {
+    command::assert_leaves_files_alone("report", &["--quick", "--scene", "ring"]);
+}
+
+/// The columns of a CSV file by name.
+type Columns = HashMap<String, Vec<String>>;
+
+/// All that a quick run of one scene leaves.
+fn quick_run(test: &str, more: &[&str]) -> HashMap<String, Columns> {
+    let out = fresh_path("report", test);
+    let folder = out.to_str().expect("the path is UTF-8");
+    let arguments = ["--quick", "--scene", "ring", "--out", folder];
+    let output = run("report", arguments.iter().chain(more));
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{error}");
+
+    let mut names: Vec<String> = fs::read_dir(&out)
+        .expect("the folder was made")
+        .map(|entry| {
+            entry
+                .expect("readable")
+                .file_name()
+                .to_string_lossy()
+                .into()
+        })
+        .collect();
+    names.sort_unstable();
+    assert!(names.contains(&"report.md".into()), "{names:?}");
+    let page = fs::read_to_string(out.join("report.md")).expect("the page is text");
+    names
+        .iter()
+        .filter_map(|name| name.strip_suffix(".csv"))
+        .map(|name| {
+            let svg = fs::read_to_string(out.join(format!("{name}.svg"))).expect("a figure");
+            assert!(
+                svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"),
+                "{name}"
+            );
+            assert!(page.contains(&format!("({name}.svg)")), "{name}");
+            let mut reader =
+                csv::Reader::from_path(out.join(format!("{name}.csv"))).expect("a file");
+            let header = reader.headers().expect("a header").clone();
+            let rows: Vec<csv::StringRecord> =
+                reader.records().collect::<Result<_, _>>().expect("a table");
+            assert!(!rows.is_empty(), "{name}");
+            let column = |(i, column): (usize, &str)| {
+                (
+                    column.to_owned(),
+                    rows.iter().map(|row| row[i].to_owned()).collect(),
+                )
+            };
+            (
+                name.to_owned(),
+                header.iter().enumerate().map(column).collect(),
+            )
+        })
+        .collect()
+}
+
+fn numbers(columns: &Columns, name: &str) -> Vec<f64> {
+    let cells = columns
+        .get(name)
+        .unwrap_or_else(|| panic!("no column {name}"));
+    cells
+        .iter()
+        .map(|cell| cell.parse().unwrap_or(f64::NAN))
+        .collect()
+}
+
+#[test]
+fn makes_every_study() {
+    let studies = quick_run("all", &[]);
+    let mut names: Vec<&str> = studies.keys().map(|name| &**name).collect();
+    names.sort_unstable();
+    assert_eq!(
+        names,
+        [
+            "delta_sweep",
+            "equal_time",
+            "functions",
+            "interleaving",
+            "receivers",
+            "tests",
+            "tightness",
+            "vpl_count"
+        ]
+    );
+
+    let sweep = &studies["delta_sweep"];
+    let [delta, ms, error, bias] =
+        ["delta", "ms", "relative_rmse", "relative_bias"].map(|name| numbers(sweep, name));
+    assert!(ms.iter().all(|ms| *ms > 0.0));
+    for (method, i) in sweep["method"].iter().zip(0..) {
+        // The picture does not depend on what encloses the lights.
+        let same = (0..delta.len()).filter(|j| delta[*j] == delta[i]);
+        for j in same.filter(|_| !method.contains("clamped")) {
+            let is_clamped = sweep["method"][j].contains("clamped");
+            assert!(
+                is_clamped || error[j] == error[i],
+                "{method} and {}",
+                sweep["method"][j]
+            );
+        }
+        // Lights that end are missing.
+        if method.contains("clamped") && delta[i] > 0.005 {
+            assert!(bias[i] < -0.02, "{method}: {} at δ = {}", bias[i], delta[i]);
+        }
+    }
+    let of = |columns: &Columns, name: &str| numbers(columns, name);
+    let tightness = &studies["tightness"];
+    for (tight, attainable) in of(tightness, "tight")
+        .iter()
+        .zip(of(tightness, "attainable"))
+    {
+        assert!(*tight >= 0.99 * attainable, "{tight} under {attainable}");
+    }
+    let tests = &studies["tests"];
+    assert!(
+        of(tests, "false_discovery_rate")
+            .iter()
+            .all(|rate| (0.0..1.0).contains(rate))
+    );
+    let receivers = &studies["receivers"];
+    let [blind, knowing] = ["relative_deviation", "relative_deviation_knowing_receiver"]
+        .map(|name| of(receivers, name));
+    assert!(
+        blind
+            .iter()
+            .zip(&knowing)
+            .all(|(blind, knowing)| blind > knowing)
+    );
+    let functions = &studies["functions"];
+    for (name, error) in functions["function"]
+        .iter()
+        .zip(of(functions, "max_relative_error"))
+    {
+        let is_number = !["tests", "bounds"].contains(&&*functions["kind"][0]);
+        assert!(!is_number || error < 0.5, "{name}: {error}");
+    }
+}
+
+#[test]
+fn makes_the_study_asked_for() {
+    let studies = quick_run("one", &["--study", "receivers"]);
+    assert_eq!(studies.keys().collect::<Vec<_>>(), ["receivers"]);
+}
