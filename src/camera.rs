@@ -9,6 +9,14 @@ use crate::{Direction, Error, PixelRectangle, TileRectangle, error, math};
 /// Its *camera space* has x to the right, y up and z = depth, the positive distance along the
 /// viewing direction, whichever handedness the engine's view space has.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        into = "crate::unchecked::Camera",
+        try_from = "crate::unchecked::Camera"
+    )
+)]
 pub struct Camera {
     rotation: Mat3,
     translation: Vec3,
@@ -22,6 +30,17 @@ pub struct Camera {
     /// depth = numerator/(NDC z + offset)
     depth_numerator: f32,
     depth_offset: f32,
+}
+
+/// The fields of a camera that do not follow from the others.
+#[derive(Clone, Copy)]
+pub(crate) struct Parts {
+    pub rotation: Mat3,
+    pub translation: Vec3,
+    pub slope_scale: Vec2,
+    pub slope_offset: Vec2,
+    pub depth_numerator: f32,
+    pub depth_offset: f32,
 }
 
 impl Camera {
@@ -38,7 +57,7 @@ impl Camera {
     /// distinct near and far planes whose corners lie within 89.7° of the viewing direction.
     pub fn new(view: Mat4, projection: Mat4) -> Result<Self, Error> {
         let (toward, slope_scale, slope_offset) = slopes(projection)?;
-        let (depth_numerator, depth_offset) = depths(projection, toward)?;
+        let (depth_numerator, depth_offset) = depths(projection, toward);
 
         let last_row = view.row(3);
         let drift = (last_row - Vec4::W).abs().max_element();
@@ -49,15 +68,12 @@ impl Camera {
                 valid: "its last row must be (0, 0, 0, 1); deviation",
             });
         }
-        let rotation_deviation = error::orthonormal("view matrix", Mat3::from_mat4(view), 1e-4)?;
         let to_depth = Vec3::new(1.0, 1.0, toward);
-        Ok(Self {
+        Self::of_parts(Parts {
             rotation: Mat3::from_diagonal(to_depth) * Mat3::from_mat4(view),
             translation: to_depth * view.w_axis.truncate(),
-            rotation_deviation,
             slope_scale,
             slope_offset,
-            corner_secant: secant(slope_scale, slope_offset),
             depth_numerator,
             depth_offset,
         })
@@ -73,7 +89,8 @@ impl Camera {
     /// [`Error::Vector`] if `eye` is not finite, equals `target`, or `up` is parallel to the view.
     /// [`Error::Number`] if `vertical_fov_radians` is outside (0, 3.1\], `aspect_ratio` (width over
     /// height) outside \[0.01, 100\], the near end of `depths` not positive and finite, or the far
-    /// end not greater than it.
+    /// end not greater than it. [`Error::Matrix`] if both angles together are so wide that a corner of
+    /// the view is not within 89.7° of its direction, or no depth of `depths` is an `f32`.
     pub fn look_at(
         eye: Vec3,
         target: Vec3,
@@ -86,7 +103,7 @@ impl Camera {
         let forward = Direction::new(target - eye)?;
         let right = Direction::new(forward.cross(up))?;
         let rotation = Mat3::from_cols(*right, right.cross(*forward), *forward).transpose();
-        let translation = error::finite("eye, turned into the view,", -(rotation * eye))?;
+        let translation = -(rotation * eye);
 
         let positive = f32::MIN_POSITIVE;
         let valid = "in (0, 3.1] radians";
@@ -106,17 +123,67 @@ impl Camera {
         // 1/far − 1/near and so on, in the form that an infinite far plane leaves finite.
         let shrink = 1.0 - near / far;
         let slope = math::tan(0.5 * fov);
-        let slope_scale = Vec2::new(slope * aspect, slope);
-        Ok(Self {
+        Self::of_parts(Parts {
             rotation,
             translation,
-            rotation_deviation: error::orthonormal("view matrix", rotation, 1e-4)?,
-            slope_scale,
+            slope_scale: Vec2::new(slope * aspect, slope),
             slope_offset: Vec2::ZERO,
-            corner_secant: secant(slope_scale, Vec2::ZERO),
             depth_numerator: -near / shrink,
             depth_offset: -1.0 / shrink,
         })
+    }
+
+    /// The camera with these parts: what all constructors end in, and what is read goes through.
+    pub(crate) fn of_parts(parts: Parts) -> Result<Self, Error> {
+        let refused = |element, valid| Error::Matrix {
+            quantity: "projection matrix",
+            element,
+            valid,
+        };
+        let Parts {
+            rotation,
+            translation,
+            slope_scale,
+            slope_offset,
+            depth_numerator,
+            depth_offset,
+        } = parts;
+        // 1/cos of the angle to the farthest corner.
+        let farthest = slope_scale.abs() + slope_offset.abs();
+        let corner_secant = farthest.extend(1.0).length();
+        if corner_secant.is_nan() || corner_secant > 200.0 {
+            let valid =
+                "the corners of the view must be within 89.7° of its direction; their 1/cos";
+            return Err(refused(corner_secant, valid));
+        }
+        let distinct = depth_numerator.is_finite() && depth_numerator != 0.0;
+        if !(distinct && depth_offset.is_finite()) {
+            let valid = "its near and far planes must be positive and distinct; element (2, 3)";
+            return Err(refused(depth_numerator, valid));
+        }
+        Ok(Self {
+            rotation,
+            translation: error::finite("translation of the view", translation)?,
+            rotation_deviation: error::orthonormal("view matrix", rotation, 1e-4)?,
+            slope_scale,
+            slope_offset,
+            corner_secant,
+            depth_numerator,
+            depth_offset,
+        })
+    }
+
+    /// What [`of_parts`](Self::of_parts) makes this camera of.
+    #[cfg(feature = "serde")]
+    pub(crate) fn parts(&self) -> Parts {
+        Parts {
+            rotation: self.rotation,
+            translation: self.translation,
+            slope_scale: self.slope_scale,
+            slope_offset: self.slope_offset,
+            depth_numerator: self.depth_numerator,
+            depth_offset: self.depth_offset,
+        }
     }
 
     /// The axes of world space in camera space, as columns.
@@ -215,33 +282,17 @@ fn slopes(projection: Mat4) -> Result<(f32, Vec2, Vec2), Error> {
     }
     let toward = w.z.signum();
     let weight = w.z.abs();
+    if weight.is_nan() || weight == 0.0 {
+        return Err(refused(w.z, "its last row must be (0, 0, ±1, 0); ±1"));
+    }
     let scale = Vec2::new(weight / x.x, weight / y.y);
     let offset = Vec2::new(-toward * x.z / x.x, -toward * y.z / y.y);
-    let farthest = secant(scale, offset);
-    if !(weight > 0.0 && farthest <= 200.0) {
-        let valid = "the corners of the view must be within 89.7° of its direction; their 1/cos";
-        return Err(refused(farthest, valid));
-    }
     Ok((toward, scale, offset))
 }
 
-/// 1/cos of the angle to the farthest corner of a view with these slopes.
-fn secant(scale: Vec2, offset: Vec2) -> f32 {
-    (scale.abs() + offset.abs()).extend(1.0).length()
-}
-
 /// The numerator and the offset of depth = numerator/(NDC z + offset).
-fn depths(projection: Mat4, toward: f32) -> Result<(f32, f32), Error> {
+fn depths(projection: Mat4, toward: f32) -> (f32, f32) {
     let weight = projection.row(3).z.abs();
-    let numerator = projection.row(2).w / weight;
-    let offset = -toward * projection.row(2).z / weight;
-    if numerator.is_finite() && numerator != 0.0 && offset.is_finite() {
-        Ok((numerator, offset))
-    } else {
-        Err(Error::Matrix {
-            quantity: "projection matrix",
-            element: numerator,
-            valid: "its near and far planes must be positive and distinct; element (2, 3)",
-        })
-    }
+    let (offset, numerator) = (projection.row(2).z, projection.row(2).w);
+    (numerator / weight, -toward * offset / weight)
 }

@@ -3,6 +3,19 @@ use core::fmt;
 use glam::{Mat3, Vec3};
 
 /// What a constructor refuses, with the value that it refused.
+///
+/// ```
+/// use stochastic_light_culling::{Camera, Error, Ggx, TileGrid, glam::Mat4};
+///
+/// let error = Ggx::new(7.0).expect_err("too rough");
+/// assert!(matches!(error, Error::Number { value: 7.0, .. }));
+/// assert!(error.to_string().starts_with("roughness α is 7, but must be in (0, 1]"));
+///
+/// assert!(matches!(TileGrid::new([0, 9], 16), Err(Error::Size { .. })));
+/// // An identity is no perspective.
+/// let camera = Camera::new(Mat4::IDENTITY, Mat4::IDENTITY);
+/// assert!(matches!(camera, Err(Error::Matrix { .. })));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Error {

@@ -29,6 +29,9 @@ use crate::{CameraSphere, Stretch};
 /// let records = [GpuStretch::new(&stretch, 7)];
 /// let bytes: &[u8] = bytemuck::cast_slice(&records);
 /// assert_eq!(bytes[28..32], 7_u32.to_ne_bytes());
+/// let GpuStretch { x_and_y_axes, z_axis, center, unused, .. } = records[0];
+/// assert_eq!(center, [0.0, 0.0, 8.0 * z_axis[2]]);
+/// assert_eq!((x_and_y_axes[1], unused), (0.0, 0));
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -62,6 +65,18 @@ impl GpuStretch {
 
 /// A [`CameraSphere`] for a storage or uniform buffer: 16 bytes, a `vec4<f32>`. Which light it is of, its
 /// place in the buffer says.
+///
+/// ```
+/// use stochastic_light_culling::{Camera, CameraSphere, GpuSphere, Sphere, glam::Vec3};
+///
+/// let camera = Camera::look_at(Vec3::ZERO, -Vec3::Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
+/// let sphere = Sphere::new(Vec3::new(0.0, 0.0, -8.0), 1.0)?;
+/// let record = CameraSphere::new(&sphere, &camera).map(|sphere| GpuSphere::from(&sphere));
+/// let record = record.expect("not empty");
+/// assert_eq!(record.center, [0.0, 0.0, 8.0]);
+/// assert_eq!(bytemuck::bytes_of(&record)[12..], record.radius_squared.to_ne_bytes());
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct GpuSphere {

@@ -19,6 +19,7 @@ use crate::{Camera, Direction, math};
 /// let before_wall = HalfSpace::new(Vec3::new(0.0, 0.0, -5.0), Direction::Z, &camera);
 /// assert!(before_wall.touches(&view, &DepthInterval::new(1.0, 4.0)?));
 /// assert!(!before_wall.touches(&view, &DepthInterval::new(6.0, 9.0)?));
+/// assert!((before_wall.offset() + 5.0).abs() < 1e-4);
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

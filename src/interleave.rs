@@ -14,6 +14,8 @@ use crate::{Error, PixelRectangle};
 /// assert_eq!(interleave.subregion_size(0), [240, 135]);
 /// assert_eq!(interleave.split_pixel([13, 8]), (5, [1, 1]));
 /// assert_eq!(interleave.join_pixel(5, [1, 1]), [13, 8]);
+/// assert_eq!((interleave.split_light(69), interleave.join_light(5, 1)), ((5, 1), 69));
+/// assert_eq!((interleave.lights_in(5, 70), interleave.lights_in(6, 70)), (2, 1));
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]

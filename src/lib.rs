@@ -123,9 +123,10 @@
 //! - `cull`: many lights against many tiles, in vectors as wide as the processor has. Needs an
 //!   allocator, and Rust 1.89.
 //! - `rayon`: the same on many cores. Brings `cull` and `std`.
-//! - `serde`: materials, roulette, ξ, directions, tile grids, depth intervals and interleaving can be
-//!   saved under the names of their constructors' arguments. What is read goes through the constructors,
-//!   and what they refuse is an error with their words.
+//! - `serde`: materials, lobes and lights, cameras, and settings such as roulette, ξ, tile grids, depth
+//!   intervals and interleaving can be saved, most under the names of their constructors' arguments, and
+//!   are read bit for bit. What is read goes through the constructors, and what they refuse is an error
+//!   with their words. Bounds, stretches, batches and lists, which follow from these, are made again.
 //! - `bytemuck`: `GpuStretch` and `GpuSphere`, lights as the records that a shader reads. The lists of
 //!   `LightLists` are such buffers as they are.
 //!
@@ -175,18 +176,12 @@ mod unchecked;
 mod vpl;
 mod wide;
 
-pub use bound::{Bound, Bounded, Ellipsoid, Proxy, Sphere, Spheroid};
-pub use brdf::{
-    AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel,
-    FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, LambertLobe, Lobe, MaskingShadowing,
-    NoFresnel, PhongLobe, Schlick, Separable,
-};
+// What a folder shows, its own `mod.rs` says.
+pub use bound::*;
+pub use brdf::*;
 pub use camera::Camera;
 #[cfg(feature = "cull")]
-pub use cull::{
-    BatchBound, BatchBuilder, BatchLobe, BatchShape, CullCounters, Culler, DepthOrder, LightBatch,
-    LightLists, TileDepths,
-};
+pub use cull::*;
 pub use direction::Direction;
 pub use error::Error;
 #[cfg(feature = "bytemuck")]
@@ -195,7 +190,7 @@ pub use half_space::HalfSpace;
 pub use interleave::Interleave;
 pub use range::{Roulette, Xi};
 pub use stretch::{CameraSphere, Stretch, stretch_matrix, stretch_rotation};
-pub use tile::{DepthInterval, PixelRectangle, TileGrid, TileRectangle, TileTest};
+pub use tile::*;
 pub use vpl::Vpl;
 
 pub use glam;

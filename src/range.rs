@@ -67,6 +67,8 @@ fn pcg3d(words: [u32; 3]) -> [u32; 3] {
 ///
 /// let roulette = Roulette::new(0.001)?;
 /// let (intensity, distance_squared) = (0.5, 1000.0); // L = δ/2, so p = ½
+/// assert_eq!(roulette.probability(intensity, distance_squared), 0.5);
+/// assert!(roulette.accepts(intensity, distance_squared, Xi::new(0.5)?));
 /// assert_eq!(roulette.estimate(intensity, distance_squared, Xi::new(0.4)?), 0.001);
 /// assert_eq!(roulette.estimate(intensity, distance_squared, Xi::new(0.6)?), 0.0);
 /// # Ok::<(), stochastic_light_culling::Error>(())

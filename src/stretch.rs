@@ -46,6 +46,20 @@ use crate::{Bound, Camera, Ellipsoid, Sphere, math};
 ///
 /// For a look at the method and for single uses; [`Stretch`] does not need it. Not finite for an
 /// empty ellipsoid.
+///
+/// ```
+/// use stochastic_light_culling::{
+///     Camera, Ellipsoid, Stretch, glam::{Mat3, Vec3}, stretch_matrix, stretch_rotation,
+/// };
+///
+/// let camera = Camera::look_at(Vec3::ZERO, Vec3::X, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
+/// let ellipsoid = Ellipsoid::new(Vec3::X, Mat3::IDENTITY, Vec3::new(1.0, 2.0, 4.0))?;
+/// let s = stretch_matrix(&ellipsoid, &camera);
+/// let both = stretch_rotation(s) * s;
+/// let stretch = Stretch::new(&ellipsoid, &camera).expect("not empty");
+/// assert!((both * Vec3::ONE - stretch.matrix() * Vec3::ONE).length() < 1e-4);
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
 pub fn stretch_matrix(ellipsoid: &Ellipsoid, camera: &Camera) -> Mat3 {
     let axes = camera.rotation() * ellipsoid.rotation();
     axes * Mat3::from_diagonal(ellipsoid.semi_axes().recip()) * axes.transpose()
@@ -53,14 +67,18 @@ pub fn stretch_matrix(ellipsoid: &Ellipsoid, camera: &Camera) -> Mat3 {
 
 /// B, the rotation that takes the images under `stretch` = S of planes of constant depth to planes of
 /// constant z [Tokuyoshi & Harada 2017, Eq. 17].
+///
+/// Not finite if S is singular or not finite itself.
 pub fn stretch_rotation(stretch: Mat3) -> Mat3 {
+    // Not `normalize`, which panics at zero where glam is built with its assertions.
+    let unit = |v: Vec3| v * v.length().recip();
     let (x, y) = (stretch.x_axis, stretch.y_axis);
-    let z = x.cross(y).normalize();
+    let z = unit(x.cross(y));
     if x.length_squared() > y.length_squared() {
-        let x = x.normalize();
+        let x = unit(x);
         Mat3::from_cols(x, z.cross(x), z).transpose()
     } else {
-        let y = y.normalize();
+        let y = unit(y);
         Mat3::from_cols(y.cross(z), y, z).transpose()
     }
 }
@@ -181,6 +199,17 @@ fn rounding_before(camera: &Camera, parts: [Vec3; 2], center: Vec3, reach: f32) 
 }
 
 /// A sphere as a tile test wants it: in camera space, with nothing stretched.
+///
+/// ```
+/// use stochastic_light_culling::{Camera, CameraSphere, Sphere, glam::Vec3};
+///
+/// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
+/// let sphere = Sphere::new(Vec3::new(0.0, 0.0, -8.0), 3.0)?;
+/// let seen = CameraSphere::new(&sphere, &camera).expect("not empty");
+/// assert_eq!(seen.center(), Vec3::new(0.0, 0.0, 8.0));
+/// assert!(9.0 < seen.radius_squared() && seen.radius_squared() < 9.001);
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraSphere {
     center: Vec3,

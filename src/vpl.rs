@@ -6,6 +6,18 @@ use crate::{Error, Lobe, error};
 ///
 /// `L` is what it reflects; an ordinary point light is one with a [`ConstantLobe`](crate::ConstantLobe).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        into = "crate::unchecked::Vpl<L>",
+        try_from = "crate::unchecked::Vpl<L>",
+        bound(
+            serialize = "L: Lobe + Clone + serde::Serialize",
+            deserialize = "L: Lobe + serde::Deserialize<'de>"
+        )
+    )
+)]
 pub struct Vpl<L> {
     position: Vec3,
     flux: f32,

@@ -7,6 +7,8 @@ mod adversary;
 mod bits;
 #[path = "any_bits/construct.rs"]
 mod construct;
+#[path = "any_bits/culling.rs"]
+mod culling;
 #[path = "any_bits/fields.rs"]
 mod fields;
 #[path = "any_bits/findings.rs"]

@@ -213,6 +213,10 @@ fn cameras_that_see_nothing() {
         );
     }
     assert!(look_at(1.0, 1.0, 1.0, f32::INFINITY).is_ok());
+    // Each in its range, but both together too wide.
+    let wide = look_at(3.1, 100.0, 0.1, 10.0).unwrap_err().to_string();
+    assert!(wide.contains("within 89.7°"), "{wide}");
+    assert!(look_at(3.1, 1.0, 0.1, 10.0).is_ok());
     for (eye, up) in [
         (Vec3::X, Vec3::Y),
         (Vec3::NAN, Vec3::Y),

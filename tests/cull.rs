@@ -264,6 +264,14 @@ fn nothing_is_found_where_there_is_nothing() {
     assert_eq!(tiles.interval_of([2, 1], 1.5), Some(1));
 }
 
+/// The product of these three is 0 modulo 2⁶⁴.
+#[test]
+fn grids_too_large_for_64_bits_are_refused() {
+    let view = TileRectangle::new([-1.0; 2].into(), [1.0; 2].into()).unwrap();
+    let tiles = TileDepths::new([1 << 31, 1 << 31], 4, |_| view);
+    assert!(matches!(tiles, Err(Error::Size { .. })));
+}
+
 #[test]
 #[should_panic(expected = "there is no tile (3, 0) of 3×2")]
 fn depths_of_no_tile_are_no_ones() {

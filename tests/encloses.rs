@@ -2,11 +2,14 @@
 //! larger than it has to be.
 
 mod generators;
+#[path = "encloses/other_lobes.rs"]
+mod other_lobes;
 mod reference;
 
 use std::f64::consts::TAU;
 
 use generators::Lit;
+use other_lobes::other_lobes;
 use proptest::prelude::*;
 use reference::{Brdf, Fresnel, GivenFresnel, Masking, Shape, Vector, smith_g1};
 use stochastic_light_culling::{
@@ -217,7 +220,7 @@ fn case() -> impl Strategy<Value = Case> {
         generators::roulette(),
     )
         .prop_map(|(brdf, lit, position, roulette)| Case {
-            brdf: generators::laid_on(&lit, brdf),
+            brdf: brdf.laid_on(lit.surface.normal),
             lit,
             position,
             roulette,
@@ -237,6 +240,25 @@ proptest! {
             for direction in &directions {
                 let level = shape.level(case.position.into(), *direction * case.radius(*direction));
                 prop_assert!(level <= 1.0, "{name} is left at level {level} towards {direction:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn bounds_of_other_lobes_enclose_them(
+        axis in generators::unit_vector(),
+        share in 0.001..=1.0_f32,
+        exponent in generators::exponent(),
+        random in prop::collection::vec(generators::unit_vector(), 40),
+    ) {
+        let lit = Lit::new(axis, axis);
+        let brdf = Brdf::Phong { albedo: share, exponent };
+        let case = Case { brdf, lit, position: Vec3::ZERO, roulette: (1.0, 1.0, 1.0) };
+        for lobe in other_lobes(lit.normal, share, exponent) {
+            for direction in case.directions(&random) {
+                let reach = (lobe.value)(direction).sqrt();
+                let level = lobe.bound.level(Vector::ZERO, direction * reach);
+                prop_assert!(level <= 1.0, "{} is left at level {level} towards {direction:?}", lobe.name);
             }
         }
     }

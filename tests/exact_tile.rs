@@ -4,7 +4,7 @@ mod generators;
 mod reference;
 
 use proptest::prelude::*;
-use reference::{Frustum, Shape, Vector, View};
+use reference::{Frustum, Shape, Vector};
 use stochastic_light_culling::{
     Camera, CameraSphere, DepthInterval, Ellipsoid, HalfSpace, PixelRectangle, Sphere, Stretch,
     TileRectangle, TileTest,
@@ -51,19 +51,6 @@ fn tile_about(
     Some((tile, DepthInterval::new(depths[0], depths[1]).ok()?))
 }
 
-/// Before the camera, at a distance in proportion.
-fn aimed(view: View, center: Vec3, distance: f64) -> View {
-    let mut view = view;
-    let seen = view.from_world.transform_vector3(center);
-    let depth = if view.left_handed {
-        distance
-    } else {
-        -distance
-    } as f32;
-    view.from_world.w_axis = (Vec3::new(0.0, 0.0, depth) - seen).extend(1.0);
-    view
-}
-
 fn decides_as_distance(
     test: &dyn TileTest,
     (tile, depths): &(TileRectangle, DepthInterval),
@@ -98,7 +85,7 @@ proptest! {
         (unit, level) in (generators::unit_vector(), 0.3..3.0),
         room in prop::array::uniform6(room()),
     ) {
-        let view = aimed(view, ellipsoid.center(), distance * f64::from(ellipsoid.semi_axes().max_element()));
+        let view = view.aimed_at(ellipsoid.center(), distance * f64::from(ellipsoid.semi_axes().max_element()));
         let camera = Camera::new(view.from_world, view.projection).unwrap();
         let stretch = Stretch::new(&ellipsoid, &camera).unwrap();
         let point = view.to_camera_space(Shape::from(ellipsoid).point(unit * level));
@@ -115,7 +102,7 @@ proptest! {
         (unit, level) in (generators::unit_vector(), 0.3..3.0),
         room in prop::array::uniform6(room()),
     ) {
-        let view = aimed(view, Vec3::ZERO, distance * radius);
+        let view = view.aimed_at(Vec3::ZERO, distance * radius);
         let camera = Camera::new(view.from_world, view.projection).unwrap();
         let sphere = CameraSphere::new(&Sphere::new(Vec3::ZERO, radius as f32).unwrap(), &camera).unwrap();
         let point = view.to_camera_space(unit * (level * radius));

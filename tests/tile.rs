@@ -4,7 +4,7 @@ mod generators;
 mod reference;
 
 use proptest::prelude::*;
-use reference::{Shape, Vector, View, exact::outward};
+use reference::{Shape, Vector, exact::outward};
 use stochastic_light_culling::{
     Bound, Bounded, Camera, CameraSphere, DepthInterval, Ellipsoid, Ggx, GgxLobe, HalfSpace,
     NoFresnel, PixelRectangle, Sphere, Stretch, TileGrid, TileRectangle, TileTest,
@@ -66,19 +66,6 @@ fn box_distance(stretch: &Stretch, tile: &TileRectangle, depths: &DepthInterval)
     apart.sqrt()
 }
 
-/// A view aimed so that `target` is in sight, or nearly.
-fn aimed(view: View, target: Vec3, distance: f64) -> View {
-    let mut view = view;
-    let seen = view.from_world.transform_vector3(target);
-    let depth = if view.left_handed {
-        distance
-    } else {
-        -distance
-    } as f32;
-    view.from_world.w_axis = (Vec3::new(0.0, 0.0, depth) - seen).extend(1.0);
-    view
-}
-
 proptest! {
     #![proptest_config(generators::cases(4000))]
 
@@ -91,7 +78,7 @@ proptest! {
         points in prop::collection::vec((generators::unit_vector(), prop_oneof![3 => Just(1.0), 1 => 0.0..1.0]), 30),
         room in (prop::array::uniform4(0.0..0.3_f32), 0.1..1.0_f32, 1.0..10.0_f32),
     ) {
-        let view = if aim { aimed(view, ellipsoid.center(), distance) } else { view };
+        let view = if aim { view.aimed_at(ellipsoid.center(), distance) } else { view };
         let camera = Camera::new(view.from_world, view.projection).unwrap();
         let stretch = Stretch::new(&ellipsoid, &camera).unwrap();
         let shape = Shape::from(ellipsoid);
@@ -113,7 +100,7 @@ proptest! {
         aim in any::<bool>(),
         points in prop::collection::vec(generators::unit_vector(), 30),
     ) {
-        let view = if aim { aimed(view, center, 2.0) } else { view };
+        let view = if aim { view.aimed_at(center, 2.0) } else { view };
         let camera = Camera::new(view.from_world, view.projection).unwrap();
         let sphere = Sphere::new(center, radius as f32).unwrap();
         let before_camera = CameraSphere::new(&sphere, &camera).unwrap();
@@ -135,7 +122,7 @@ proptest! {
             (generators::unit_vector(), generators::log_uniform(1e-6, 1e3), generators::log_uniform(1e-12, 1.0)),
             30),
     ) {
-        let view = if aim { aimed(view, position, 2.0) } else { view };
+        let view = if aim { view.aimed_at(position, 2.0) } else { view };
         let camera = Camera::new(view.from_world, view.projection).unwrap();
         let half_space = HalfSpace::new(position, lit.normal, &camera);
         let normal = lit.surface.normal;
@@ -166,7 +153,7 @@ proptest! {
         view in generators::view(),
         points in prop::collection::vec(generators::unit_vector(), 30),
     ) {
-        let view = aimed(view, position, 3.0);
+        let view = view.aimed_at(position, 3.0);
         let camera = Camera::new(view.from_world, view.projection).unwrap();
         let lobe = GgxLobe::new(Ggx::new(roughness).unwrap(), NoFresnel, lit.normal, lit.incoming);
         let spheroid = lobe.unit_bound().placed(position, scale as f32);
@@ -188,7 +175,7 @@ proptest! {
         tile in (0..64_u32, 0..64_u32),
         depths in (generators::log_uniform(1e-2, 1e3), 1.0..3.0),
     ) {
-        let view = aimed(view, ellipsoid.center(), distance);
+        let view = view.aimed_at(ellipsoid.center(), distance);
         let camera = Camera::new(view.from_world, view.projection).unwrap();
         let stretch = Stretch::new(&ellipsoid, &camera).unwrap();
         let pixels = PixelRectangle { min: [tile.0, tile.1], max: [tile.0 + 1, tile.1 + 1] };

@@ -1,8 +1,8 @@
 //! The part of an engine that this crate does most of: from lights and a depth buffer to lists.
 
 use stochastic_light_culling::{
-    Bound, Bounded, Camera, CullCounters, Culler, DepthInterval, Error, GgxLobe, LightBatch,
-    LightLists, Roulette, Schlick, Spheroid, Stretch, TileDepths, TileGrid, Vpl, Xi,
+    BatchBuilder, Bounded, Camera, CullCounters, Culler, DepthInterval, DepthOrder, Error, GgxLobe,
+    LightBatch, LightLists, Roulette, Schlick, Spheroid, Stretch, TileDepths, TileGrid, Vpl, Xi,
 };
 
 pub type Light = Vpl<GgxLobe<Schlick>>;
@@ -17,8 +17,7 @@ pub struct LightPass {
     size: [u32; 2],
     grid: TileGrid,
     tiles: TileDepths,
-    /// The lights by depth, nearest first.
-    order: Vec<(f32, u32)>,
+    order: DepthOrder,
     batch: LightBatch<Stretch>,
     culler: Culler<Stretch>,
     lists: LightLists,
@@ -36,7 +35,7 @@ impl LightPass {
         let grid = TileGrid::new(size, tile_size)?;
         let rectangle = |tile| camera.tile_rectangle(size, grid.pixels(tile));
         Ok(Self {
-            order: (0..).zip(&lights).map(|(light, _)| (0.0, light)).collect(),
+            order: DepthOrder::new(),
             lights: lights.into_iter().map(with_bound).collect(),
             roulette: Roulette::new(delta)?,
             size,
@@ -63,21 +62,15 @@ impl LightPass {
         }
 
         // From near to far, which makes culling faster and changes nothing else.
-        for (depth, number) in &mut self.order {
-            let (light, _) = &self.lights[*number as usize];
-            *depth = camera.to_camera_space(light.position()).z;
-        }
-        self.order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-
-        self.batch.clear();
-        for (_, number) in &self.order {
+        let positions = self.lights.iter().map(|(light, _)| light.position());
+        let order = self.order.of(positions, camera);
+        let placed = order.iter().map(|number| {
             let (light, unit_bound) = &self.lights[*number as usize];
             let scale = self.roulette.scale(light.flux(), xi(*number, frame));
-            let bound = unit_bound.placed(light.position(), scale);
-            if let Some(stretch) = Stretch::new(&bound.into(), camera) {
-                self.batch.push(*number, &stretch);
-            }
-        }
+            (*number, unit_bound, light.position(), scale)
+        });
+        self.batch.clear();
+        BatchBuilder::new(&self.roulette, camera).add_placed(placed, &mut self.batch);
         self.culler.cull(&self.batch, &self.tiles, &mut self.lists)
     }
 

@@ -10,6 +10,18 @@ use crate::{Error, error, math};
 ///
 /// Its centre is held in two parts, the light and the way from there, since of their sum little is left
 /// for a light with a tiny range far from the world's origin.
+///
+/// ```
+/// use stochastic_light_culling::{Bound, Ellipsoid, glam::{Mat3, Vec3}};
+///
+/// let around = Vec3::new(0.0, 1.0, 0.0);
+/// let unit = Ellipsoid::new(around, Mat3::IDENTITY, Vec3::new(1.0, 2.0, 3.0))?;
+/// let far = Vec3::new(1e9, 0.0, 0.0);
+/// // A metre above the light, which the sum of both numbers cannot say.
+/// assert_eq!(unit.placed(far, 1.0).center_parts(), [far, around]);
+/// assert!(unit.placed(far, 0.0).is_empty());
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid {
     light: Vec3,

@@ -25,9 +25,12 @@ use crate::wide::{self, Vector};
 /// let positions: Vec<Vec3> = Proxy::Icosphere.vertices(&light).collect();
 /// let indices: &[u16] = Proxy::Icosphere.triangles().as_flattened();
 /// assert_eq!((positions.len(), indices.len()), (42, 3 * 80));
+/// // Where vertices cost more than pixels.
+/// assert_eq!(Proxy::Icosahedron.vertices(&light).len(), 12);
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Proxy {
     /// 20 triangles with 12 vertices: 1.207 times the ellipsoid's volume.
     Icosahedron,

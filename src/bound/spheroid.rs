@@ -15,6 +15,17 @@ use crate::{Direction, math};
 /// centre q + (k/2α) r ω_u and the semi-axis r_u = (1 + α²)/(2α) r are half the difference and half
 /// the sum of these, and r_v = r_w = r is their geometric mean. To add the centre's large offset
 /// and subtract it again would lose the near end; so the focus is what is stored.
+///
+/// ```
+/// use stochastic_light_culling::{Bounded, Direction, Ggx, GgxLobe, NoFresnel, glam::Vec3};
+///
+/// let lobe = GgxLobe::new(Ggx::new(0.1)?, NoFresnel, Direction::Z, Direction::Z);
+/// let spheroid = lobe.unit_bound();
+/// assert_eq!((spheroid.focus(), spheroid.axis()), (Vec3::ZERO, lobe.mirror_direction()));
+/// assert!((spheroid.long_semi_axis() / spheroid.radius() - 5.05).abs() < 1e-5);
+/// assert!(spheroid.enclosing_sphere().radius() < spheroid.sphere_at_focus().radius());
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spheroid {
     focus: Vec3,

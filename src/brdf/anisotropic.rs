@@ -13,14 +13,18 @@ use crate::{Error, error, math};
 /// bitangent n × tangent, and the normal n.
 ///
 /// ```
-/// use stochastic_light_culling::{AnisotropicGgx, Ggx, glam::Vec3};
+/// use stochastic_light_culling::{AnisotropicGgx, Ggx, HeightCorrelated, Separable, glam::Vec3};
 ///
 /// let brushed = AnisotropicGgx::new(0.4, 0.1)?;
 /// // Facets lean along the tangent more often than across it.
 /// assert!(brushed.ndf(Vec3::new(0.3, 0.0, 1.0)) > brushed.ndf(Vec3::new(0.0, 0.3, 1.0)));
 ///
 /// let (even, plain) = (AnisotropicGgx::new(0.2, 0.2)?, Ggx::new(0.2)?);
-/// assert!((even.masking(Vec3::new(0.6, 0.0, 0.8)) - plain.masking(0.8)).abs() < 1e-6);
+/// let slanted = Vec3::new(0.6, 0.0, 0.8);
+/// assert!((even.masking(slanted) - plain.masking(0.8)).abs() < 1e-6);
+/// // Facets that are lit are more often seen as well than chance has it.
+/// let by_chance = brushed.masking_shadowing::<Separable>(slanted, slanted);
+/// assert!(by_chance < brushed.masking_shadowing::<HeightCorrelated>(slanted, slanted));
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

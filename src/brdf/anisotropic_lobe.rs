@@ -25,6 +25,11 @@ use crate::{Direction, Error, math};
 /// let towards = |x, y| Direction::new(Vec3::new(x, y, 1.0)).map(Vec3::from);
 /// assert!(lobe.value(towards(1.0, 0.3)?) > lobe.value(towards(1.3, 0.0)?));
 ///
+/// assert_eq!((lobe.ggx(), lobe.tangent()), (brushed, tangent));
+/// // No more than this leaves it of what arrives at facets that are lit.
+/// assert!(lobe.max_reflected() <= 1.0 && lobe.incident_cosine() > 0.7);
+/// assert!(lobe.separable().value(towards(1.0, 0.3)?) <= lobe.value(towards(1.0, 0.3)?));
+///
 /// let semi_axes = lobe.unit_bound().semi_axes();
 /// assert!(semi_axes.max_element() > 3.0 * semi_axes.min_element());
 /// // A tangent is needed to say which way is which.
@@ -32,6 +37,18 @@ use crate::{Direction, Error, math};
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        into = "crate::unchecked::AnisotropicGgxLobe<F>",
+        try_from = "crate::unchecked::AnisotropicGgxLobe<F>",
+        bound(
+            serialize = "F: Fresnel + serde::Serialize, G: Copy",
+            deserialize = "F: Fresnel + serde::Deserialize<'de>"
+        )
+    )
+)]
 pub struct AnisotropicGgxLobe<F = NoFresnel, G = HeightCorrelated> {
     ggx: AnisotropicGgx,
     /// As given.
@@ -87,6 +104,13 @@ impl<F: Fresnel> AnisotropicGgxLobe<F> {
 
     /// The same lobe with [`Separable`] masking and shadowing.
     pub fn separable(self) -> AnisotropicGgxLobe<F, Separable> {
+        self.with_masking()
+    }
+}
+
+impl<F: Fresnel, G> AnisotropicGgxLobe<F, G> {
+    /// The same lobe with masking and shadowing of another form.
+    pub(crate) fn with_masking<H>(self) -> AnisotropicGgxLobe<F, H> {
         let Self {
             ggx,
             tangent,
@@ -97,12 +121,10 @@ impl<F: Fresnel> AnisotropicGgxLobe<F> {
             ggx,
             tangent,
             tangent_axes,
-            at_any_azimuth: at_any_azimuth.separable(),
+            at_any_azimuth: at_any_azimuth.with_masking(),
         }
     }
-}
 
-impl<F: Fresnel, G> AnisotropicGgxLobe<F, G> {
     /// The microsurface.
     pub fn ggx(&self) -> AnisotropicGgx {
         self.ggx

@@ -6,6 +6,16 @@ use super::Lobe;
 
 /// The same radiant intensity in every direction: an engine's ordinary point light, whose intensity
 /// is its flux over 4π, culled as in [Tokuyoshi & Harada 2016].
+///
+/// ```
+/// use stochastic_light_culling::{ConstantLobe, Roulette, Vpl, Xi, glam::Vec3};
+///
+/// let lamp = Vpl::new(Vec3::ZERO, 100.0, ConstantLobe)?;
+/// let sphere = lamp.bound(&Roulette::new(0.001)?, Xi::new(0.5)?);
+/// let range = (100.0 / (4.0 * std::f32::consts::PI) / (0.001 * 0.5)).sqrt();
+/// assert!((sphere.radius() / range - 1.0).abs() < 1e-5);
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ConstantLobe;

@@ -8,6 +8,29 @@ pub(super) const LEAST_REFLECTED: f32 = 1e-30;
 ///
 /// An implementation must be quasi-convex in the angle, that is, fall and then rise, or only one of
 /// both: [`maximum`](Fresnel::maximum) rests on it.
+///
+/// ```
+/// use stochastic_light_culling::{Direction, Fresnel, FresnelMajorant, Ggx, GgxLobe};
+///
+/// /// A coat over a base of one reflectance: F0 = 0.04 and all of the light at grazing.
+/// #[derive(Clone, Copy)]
+/// struct Coat(f32);
+///
+/// impl Fresnel for Coat {
+///     fn reflectance(&self, half_angle_cosine: f32) -> f32 {
+///         self.0.max(0.04 + 0.96 * (1.0 - half_angle_cosine).powi(5))
+///     }
+///
+///     // Without this the tight bound would follow the largest F, which is 1.
+///     fn majorant(&self) -> FresnelMajorant {
+///         FresnelMajorant { base: self.0.max(0.04), rise: 0.96 }
+///     }
+/// }
+///
+/// let lobe = GgxLobe::new(Ggx::new(0.3)?, Coat(0.2), Direction::Z, Direction::Z);
+/// assert!(lobe.max_fresnel() < 0.21);
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
 pub trait Fresnel: Copy {
     /// F in \[0, 1\] for cosθ_h = ω_i·ω_h in \[0, 1\].
     fn reflectance(&self, half_angle_cosine: f32) -> f32;
@@ -44,6 +67,7 @@ pub trait Fresnel: Copy {
 
 /// base + rise (1 − cosθ_h)⁵, at least F for every cosθ_h in \[0, 1\].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FresnelMajorant {
     /// Its value head-on, at least 10⁻³⁰.
     pub base: f32,

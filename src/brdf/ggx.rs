@@ -6,6 +6,16 @@ use crate::{Error, error, math};
 
 /// The GGX microsurface of roughness α: how its facets are distributed and how they mask each
 /// other [Walter et al. 2007; Trowbridge & Reitz 1975].
+///
+/// ```
+/// use stochastic_light_culling::Ggx;
+///
+/// let (satin, matt) = (Ggx::new(0.2)?, Ggx::new(0.8)?);
+/// assert!(satin.ndf(1.0) > matt.ndf(1.0) && satin.masking(0.1) > matt.masking(0.1));
+/// // A mirror has no lobe, and what comes nearest to one has a narrow lobe.
+/// assert!(Ggx::new(0.0).is_err() && Ggx::new(Ggx::MIN_ROUGHNESS).is_ok());
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::Ggx"))]

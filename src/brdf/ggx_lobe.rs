@@ -23,18 +23,38 @@ use crate::{Direction, math};
 /// );
 /// let mirror = Vec3::from(Direction::new(Vec3::new(1.0, 0.0, 1.0))?);
 /// assert!(gold.value(mirror) > gold.value(Vec3::Z));
+/// assert!(gold.separable().value(mirror) < gold.value(mirror));
+///
+/// assert_eq!(gold.ggx().roughness(), 0.2);
+/// assert!((gold.incident_cosine() - 0.5_f32.sqrt()).abs() < 1e-6);
+/// // F is 1 where the reflection grazes the surface, but there it is masked.
+/// assert!(0.9 <= gold.max_reflected() && gold.max_reflected() < gold.max_fresnel());
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        from = "crate::unchecked::GgxLobe<F>",
+        bound(
+            serialize = "F: serde::Serialize",
+            deserialize = "F: Fresnel + serde::Deserialize<'de>"
+        )
+    )
+)]
 pub struct GgxLobe<F = NoFresnel, G = HeightCorrelated> {
     ggx: Ggx,
     fresnel: F,
     normal: Direction,
     incoming: Direction,
     /// μ; zero if the light arrives from below.
+    #[cfg_attr(feature = "serde", serde(skip))]
     incident_cosine: f32,
     /// √(kμ² + α²)
+    #[cfg_attr(feature = "serde", serde(skip))]
     incident_root: f32,
+    #[cfg_attr(feature = "serde", serde(skip))]
     masking_shadowing: PhantomData<G>,
 }
 
@@ -62,6 +82,13 @@ impl<F: Fresnel> GgxLobe<F> {
 
     /// The same lobe with [`Separable`] masking and shadowing.
     pub fn separable(self) -> GgxLobe<F, Separable> {
+        self.with_masking()
+    }
+}
+
+impl<F: Fresnel, G> GgxLobe<F, G> {
+    /// The same lobe with masking and shadowing of another form.
+    pub(crate) fn with_masking<H>(self) -> GgxLobe<F, H> {
         let Self {
             ggx,
             fresnel,
@@ -81,9 +108,7 @@ impl<F: Fresnel> GgxLobe<F> {
             masking_shadowing: PhantomData,
         }
     }
-}
 
-impl<F: Fresnel, G> GgxLobe<F, G> {
     /// The microsurface.
     pub fn ggx(&self) -> Ggx {
         self.ggx
@@ -225,7 +250,10 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
             self.fresnel.reflectance(cosine).max(head_on) * (masking * unmasked)
         });
         let joint = products.into_iter().fold(0.0, f32::max);
-        math::round_up(joint, 96).clamp(LEAST_REFLECTED.min(most), most)
+        // Not `clamp`, which panics where a Fresnel factor of the caller's own makes `most` NaN.
+        math::round_up(joint, 96)
+            .max(LEAST_REFLECTED.min(most))
+            .min(most)
     }
 }
 

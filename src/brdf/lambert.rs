@@ -6,6 +6,15 @@ use super::Lobe;
 use crate::{Direction, Error, error};
 
 /// Lambert's lobe: the same radiance in every direction, f = ρ/π.
+///
+/// ```
+/// use stochastic_light_culling::{Direction, LambertLobe, Lobe, glam::Vec3};
+///
+/// let chalk = LambertLobe::new(0.9, Direction::Z)?;
+/// assert!((chalk.value(Vec3::Z) - 0.9 / std::f32::consts::PI).abs() < 1e-6);
+/// assert_eq!(chalk.value(-Vec3::Z), 0.0);
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::LambertLobe"))]

@@ -4,11 +4,36 @@ use super::Ggx;
 ///
 /// A type parameter, so that the form an engine shades with is the form its lights are culled by.
 /// Every form is at most G1(μ_i), grows with μ_o and falls with its root, which the bounds rely on.
+///
+/// ```
+/// use stochastic_light_culling::{Ggx, HeightCorrelated, MaskingShadowing, Separable};
+///
+/// let (rough, lit, seen) = (Ggx::new(0.8)?, 0.3, 0.2);
+/// let together = HeightCorrelated::masking_shadowing(rough, lit, seen);
+/// let by_chance = Separable::masking_shadowing(rough, lit, seen);
+/// assert!(by_chance < together && together < rough.masking(lit));
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
 pub trait MaskingShadowing: Copy {
     /// G2(μ_i, μ_o)/(4μ_i): what a microfacet BRDF times μ_o has besides F and D.
     ///
     /// Finite for cosines in (0, 1], however close to grazing. The `root`s are √(kμ² + α²) of the
     /// two cosines; of a direction (x, y, z) over a grain, √(α_x²x² + α_y²y² + z²).
+    ///
+    /// ```
+    /// use stochastic_light_culling::MaskingShadowing;
+    ///
+    /// /// No facet shadows another: G2 = G1(μ_i).
+    /// #[derive(Clone, Copy)]
+    /// struct MaskedAlone;
+    ///
+    /// impl MaskingShadowing for MaskedAlone {
+    ///     fn over_four_incident_cosines(cosine: f32, root: f32, _: f32, _: f32) -> f32 {
+    ///         0.5 / (cosine + root)
+    ///     }
+    /// }
+    /// assert_eq!(MaskedAlone::over_four_incident_cosines(1.0, 1.0, 1.0, 1.0), 0.25);
+    /// ```
     fn over_four_incident_cosines(
         incident_cosine: f32,
         incident_root: f32,

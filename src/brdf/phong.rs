@@ -27,14 +27,23 @@ use crate::{Direction, Error, error, math};
 /// // A slim ellipsoid from the light along the mirror direction.
 /// let semi_axes = plastic.unit_bound().semi_axes();
 /// assert!(semi_axes.x > 3.0 * semi_axes.y);
+///
+/// // A spotlight, with no surface to cut it.
+/// let spot = PhongLobe::about(1.0, 10.0, Direction::X)?;
+/// assert!(spot.incoming().is_none() && spot.exponent() < PhongLobe::MAX_EXPONENT);
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::PhongLobe"))]
 pub struct PhongLobe {
     albedo: f32,
     exponent: f32,
     normal: Direction,
+    incoming: Option<Direction>,
+    #[cfg_attr(feature = "serde", serde(skip))]
     axis: Direction,
+    #[cfg_attr(feature = "serde", serde(skip))]
     is_lit: bool,
 }
 
@@ -66,6 +75,7 @@ impl PhongLobe {
                 0.0..=Self::MAX_EXPONENT,
             )?,
             normal,
+            incoming: Some(incoming),
             axis: incoming.mirrored(normal),
             is_lit: math::exact_dot(*normal, *incoming) > 0.0,
         })
@@ -79,8 +89,12 @@ impl PhongLobe {
     /// As [`new`](Self::new).
     pub fn about(albedo: f32, exponent: f32, axis: Direction) -> Result<Self, Error> {
         let mirrored = Self::new(albedo, exponent, axis, axis)?;
-        // Not the axis mirrored at itself, which is a rounding away.
-        Ok(Self { axis, ..mirrored })
+        Ok(Self {
+            incoming: None,
+            // Not mirrored at itself, which is a rounding away.
+            axis,
+            ..mirrored
+        })
     }
 
     /// The share of light reflected, ρ, but for what the horizon cuts off.
@@ -96,6 +110,11 @@ impl PhongLobe {
     /// The surface normal; of a lobe [about](Self::about) an axis, that axis.
     pub fn normal(&self) -> Direction {
         self.normal
+    }
+
+    /// ω_i, the direction that light comes from; `None` of a lobe [about](Self::about) an axis.
+    pub fn incoming(&self) -> Option<Direction> {
+        self.incoming
     }
 
     /// ω_u, the direction in which the lobe is largest.

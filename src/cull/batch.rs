@@ -70,6 +70,36 @@ impl Reach {
 /// assert_eq!(batch.len(), 100);
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
+///
+/// What it holds depends on the lobes of the lights:
+///
+/// ```
+/// use stochastic_light_culling::{
+///     BatchBound, BatchBuilder, BatchLobe, LightBatch, Vpl, Xi,
+/// };
+///
+/// /// Lights that a frame has anew.
+/// fn batch_of<L: BatchLobe>(lights: &[Vpl<L>], builder: &BatchBuilder) -> LightBatch<L::Shape> {
+///     let mut batch = LightBatch::new();
+///     let frame = 0;
+///     let given = (0..).zip(lights).map(|(i, light)| (i, light, Xi::hashed(i, frame, 0)));
+///     builder.add(given, &mut batch);
+///     batch
+/// }
+///
+/// /// Lights whose bounds were kept, here all with the same scale.
+/// fn batch_of_bounds<L: BatchLobe, B: BatchBound>(
+///     lights: &[(Vpl<L>, B)],
+///     builder: &BatchBuilder,
+///     scale: f32,
+/// ) -> LightBatch<B::Shape> {
+///     let mut batch = LightBatch::new();
+///     let given = (0..).zip(lights);
+///     let given = given.map(|(i, (light, bound))| (i, bound, light.position(), scale));
+///     builder.add_placed(given, &mut batch);
+///     batch
+/// }
+/// ```
 #[derive(Clone, Debug)]
 pub struct LightBatch<T: BatchShape> {
     len: usize,

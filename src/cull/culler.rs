@@ -49,6 +49,7 @@ pub struct Culler<T: BatchShape> {
 
 /// What one cull did, and what it was spared.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CullCounters {
     /// Tests of a light against a block of tiles.
     pub block_tests: u64,
@@ -72,6 +73,33 @@ impl<T: BatchShape> Culler<T> {
     /// A culler with vectors of at most `lanes` lanes. The lists are the same; for measurements.
     ///
     /// On x86 16 is AVX-512, 8 is AVX2, and 4 is SSE; elsewhere there is but one width.
+    ///
+    /// ```
+    /// use stochastic_light_culling::{
+    ///     BatchBuilder, Camera, Culler, DepthInterval, Direction, Ggx, GgxLobe, LightBatch,
+    ///     LightLists, NoFresnel, Roulette, TileDepths, TileGrid, Vpl, Xi, glam::Vec3,
+    /// };
+    ///
+    /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
+    /// let grid = TileGrid::new([128, 128], 16)?;
+    /// let rectangle = |tile| camera.tile_rectangle([128, 128], grid.pixels(tile));
+    /// let mut tiles = TileDepths::new(grid.size(), 1, rectangle)?;
+    /// for tile in grid.tiles() {
+    ///     tiles.set(tile, [DepthInterval::new(5.0, 20.0)?]);
+    /// }
+    /// let lobe = GgxLobe::new(Ggx::new(0.2)?, NoFresnel, Direction::Y, Direction::Y);
+    /// let light = Vpl::new(Vec3::new(0.0, -1.0, -9.0), 1.0, lobe)?;
+    ///
+    /// let builder = BatchBuilder::new(&Roulette::new(0.01)?, &camera);
+    /// let mut lists = [4, 8, 16].map(|_| LightLists::new());
+    /// for (lists, lanes) in lists.iter_mut().zip([4, 8, 16]) {
+    ///     let mut batch = LightBatch::new();
+    ///     builder.with_lanes(lanes).add_tight([(3, &light, Xi::new(0.5)?)], &mut batch);
+    ///     Culler::with_lanes(lanes).cull(&batch, &tiles, lists)?;
+    /// }
+    /// assert!(!lists[0].is_empty() && lists[0] == lists[1] && lists[1] == lists[2]);
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
     pub fn with_lanes(lanes: usize) -> Self {
         Self::with_level(at_most(lanes))
     }
@@ -100,6 +128,31 @@ impl<T: BatchShape> Culler<T> {
     ///
     /// They are shorter, and take longer, a light at a time: worth it where each light of a list costs
     /// more than that.
+    ///
+    /// ```
+    /// use stochastic_light_culling::{
+    ///     Camera, Culler, DepthInterval, Ellipsoid, LightBatch, LightLists, Stretch, TileDepths,
+    ///     TileRectangle, glam::{Mat3, Vec2, Vec3},
+    /// };
+    ///
+    /// // Beside a deep tile far off the axis, but in the box around it.
+    /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.5, 1.0, 0.1..100.0)?;
+    /// let center = Vec3::new(5.5, 0.0, -5.2);
+    /// let ellipsoid = Ellipsoid::new(center, Mat3::IDENTITY, Vec3::new(0.5, 1.0, 0.5))?;
+    /// let mut batch = LightBatch::new();
+    /// batch.extend(Stretch::new(&ellipsoid, &camera).map(|stretch| (0, stretch)));
+    /// let tile = TileRectangle::new(Vec2::new(0.5, 0.0), Vec2::new(0.6, 0.1))?;
+    /// let mut tiles = TileDepths::new([1, 1], 1, |_| tile)?;
+    /// tiles.set([0, 0], [DepthInterval::new(5.0, 10.0)?]);
+    ///
+    /// let mut lists = LightLists::new();
+    /// // One tile needs no blocks.
+    /// let mut culler = Culler::new().without_blocks();
+    /// assert_eq!(culler.cull(&batch, &tiles, &mut lists)?.pairs, 1);
+    /// let counters = culler.with_exact_test().cull(&batch, &tiles, &mut lists)?;
+    /// assert_eq!((counters.pairs, counters.rejected_exactly), (0, 1));
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
     pub fn with_exact_test(mut self) -> Self {
         self.scratch.exact = true;
         self

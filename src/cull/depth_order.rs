@@ -43,11 +43,8 @@ impl DepthOrder {
 
     /// The indices of `positions`, in world space, by their depth before `camera`, to about one per cent:
     /// the order of those that are nearer to each other is kept, and so is that of those nearer than
-    /// 1/256 of the farthest one, or behind the eye.
-    ///
-    /// # Panics
-    ///
-    /// If there are more positions than a `u32` counts.
+    /// 1/256 of the farthest one, or behind the eye. Positions past the first 2³² − 1, whose indices no
+    /// `u32` counts, are left out.
     pub fn of(&mut self, positions: impl IntoIterator<Item = Vec3>, camera: &Camera) -> &[u32] {
         let forward = camera.rotation().row(2);
         let offset = camera.translation().z;
@@ -57,8 +54,8 @@ impl DepthOrder {
             if depth > 0.0 { depth } else { 0.0 }
         };
         self.depths.clear();
-        self.depths.extend(positions.into_iter().map(depth));
-        let count = u32::try_from(self.depths.len()).expect("less than 2³² positions");
+        let counted = positions.into_iter().take(u32::MAX as usize);
+        self.depths.extend(counted.map(depth));
 
         let farthest = self.depths.iter().copied().fold(0.0, f32::max);
         let step = Step::new(farthest);
@@ -73,7 +70,7 @@ impl DepthOrder {
             *lights = start;
         }
         self.order.resize(self.depths.len(), 0);
-        for (light, depth) in (0..count).zip(&self.depths) {
+        for (light, depth) in (0..).zip(&self.depths) {
             let place = &mut self.starts[step.of(*depth)];
             self.order[*place as usize] = light;
             *place += 1;

@@ -4,6 +4,33 @@ use alloc::vec::Vec;
 ///
 /// Two arrays, as a GPU reads them: [`ranges`](Self::ranges) says where each list begins and ends in
 /// [`numbers`](Self::numbers). Keeps its memory from frame to frame.
+///
+/// ```
+/// use stochastic_light_culling::{
+///     Camera, CameraSphere, Culler, DepthInterval, LightBatch, LightLists, Sphere, TileDepths,
+///     TileGrid, glam::Vec3,
+/// };
+///
+/// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 2.0, 0.1..100.0)?;
+/// let grid = TileGrid::new([32, 16], 16)?;
+/// let rectangle = |tile| camera.tile_rectangle([32, 16], grid.pixels(tile));
+/// let mut tiles = TileDepths::new(grid.size(), 1, rectangle)?;
+/// for tile in grid.tiles() {
+///     tiles.set(tile, [DepthInterval::new(5.0, 20.0)?]);
+/// }
+/// // One to the left, one to the right, and one in the middle of a view of two tiles.
+/// let mut batch = LightBatch::new();
+/// for (number, x) in [(7, -3.0), (8, 3.0), (9, 0.0)] {
+///     let sphere = Sphere::new(Vec3::new(x, 0.0, -10.0), 1.0)?;
+///     batch.extend(CameraSphere::new(&sphere, &camera).map(|sphere| (number, sphere)));
+/// }
+/// let mut lists = LightLists::new();
+/// Culler::new().cull(&batch, &tiles, &mut lists)?;
+/// assert_eq!(lists.ranges(), [[0, 2], [2, 4]]);
+/// assert_eq!(lists.numbers(), [7, 9, 8, 9]);
+/// assert_eq!(lists.of([1, 0], 0), [8, 9]);
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LightLists {
     columns: usize,

@@ -24,6 +24,32 @@ impl<T: BatchShape + Send + Sync> Culler<T> {
     /// Worth it for thousands of tiles. Where a frame has many small grids, such as the subregions of
     /// interleaved sampling, let each thread cull some of them with a culler of its own.
     ///
+    /// ```
+    /// use stochastic_light_culling::{
+    ///     Camera, CameraSphere, Culler, DepthInterval, LightBatch, LightLists, Sphere, TileDepths,
+    ///     TileGrid, glam::Vec3,
+    /// };
+    ///
+    /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
+    /// let grid = TileGrid::new([1024, 1024], 16)?;
+    /// let mut tiles = TileDepths::new(grid.size(), 1, |tile| {
+    ///     camera.tile_rectangle([1024, 1024], grid.pixels(tile))
+    /// })?;
+    /// for tile in grid.tiles() {
+    ///     tiles.set(tile, [DepthInterval::new(5.0, 20.0)?]);
+    /// }
+    /// let mut batch = LightBatch::new();
+    /// let sphere = Sphere::new(Vec3::new(0.0, 0.0, -10.0), 1.0)?;
+    /// batch.extend(CameraSphere::new(&sphere, &camera).map(|shape| (7, shape)));
+    ///
+    /// let (mut culler, [mut many, mut one]) = (Culler::new(), [LightLists::new(), LightLists::new()]);
+    /// culler.cull_in_parallel(&batch, &tiles, &mut many)?;
+    /// culler.cull(&batch, &tiles, &mut one)?;
+    /// assert!(!one.is_empty());
+    /// assert_eq!(many.of([32, 32], 0), one.of([32, 32], 0));
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
+    ///
     /// # Errors
     ///
     /// As [`cull`](Self::cull).

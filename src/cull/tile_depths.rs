@@ -21,6 +21,8 @@ use crate::{DepthInterval, Error, TileRectangle};
 ///     let depths = grid.pixels(tile).pixels().map(|[x, y]| (x + y) as f32); // of a depth buffer
 ///     tiles.set(tile, DepthInterval::modified_half_z(depths));
 /// }
+/// assert_eq!((tiles.size(), tiles.intervals()), ([6, 4], 2));
+/// assert_eq!(tiles.interval_of([1, 1], 60.0), Some(1));
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +56,8 @@ impl TileDepths {
         intervals: u32,
         rectangle: impl Fn([u32; 2]) -> TileRectangle,
     ) -> Result<Self, Error> {
-        let slots = u64::from(size[0]) * u64::from(size[1]) * u64::from(intervals);
+        // Of two they fit, but not of three.
+        let slots = (u64::from(size[0]) * u64::from(size[1])).saturating_mul(intervals.into());
         if slots == 0 || slots > u64::from(u32::MAX) {
             return Err(Error::Size {
                 quantity: "grid of tiles",

@@ -55,6 +55,14 @@ impl DepthInterval {
     }
 
     /// *`HalfZ`*: the interval around `depths`, cut in two at its middle [Stewart 2015].
+    ///
+    /// ```
+    /// use stochastic_light_culling::DepthInterval;
+    ///
+    /// let halves = DepthInterval::half_z([2.0, 9.0, 8.0]);
+    /// assert_eq!(halves, Some([DepthInterval::new(2.0, 5.5)?, DepthInterval::new(5.5, 9.0)?]));
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
     pub fn half_z(depths: impl IntoIterator<Item = f32>) -> Option<[Self; 2]> {
         let whole = Self::around(depths)?;
         let middle = whole.middle();

@@ -4,6 +4,14 @@ use crate::Error;
 
 /// What a tile covers of the plane at depth 1: a rectangle of slopes (x/z, y/z), its edges included.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(
+        into = "crate::unchecked::TileRectangle",
+        try_from = "crate::unchecked::TileRectangle"
+    )
+)]
 pub struct TileRectangle {
     min: Vec2,
     max: Vec2,

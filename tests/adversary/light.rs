@@ -65,7 +65,7 @@ impl Light {
         let incoming = tangent * (1.0 - mu * mu).sqrt() + normal * mu;
         let normal = direction(normal);
         let mut light = Self {
-            brdf: laid_on(normal, brdf),
+            brdf: brdf.laid_on(Vector::from(*normal)),
             normal,
             // Normal incidence is so to the last bit.
             incoming: if mu == 1.0 {
@@ -297,25 +297,6 @@ fn masking(rng: &mut Rng) -> Masking {
         Masking::HeightCorrelated
     } else {
         Masking::Separable
-    }
-}
-
-/// `brdf` with another tangent, if it has one that is nearly parallel to `normal`.
-pub fn laid_on(normal: Direction, brdf: Brdf) -> Brdf {
-    let normal = Vector::from(*normal);
-    match brdf {
-        Brdf::Anisotropic {
-            roughness,
-            tangent,
-            fresnel,
-            masking,
-        } if normal.cross(Vector::from(*tangent)).length() < 2e-6 => Brdf::Anisotropic {
-            roughness,
-            tangent: direction(normal.orthogonal()),
-            fresnel,
-            masking,
-        },
-        other => other,
     }
 }
 

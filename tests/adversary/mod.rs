@@ -5,7 +5,7 @@
 mod light;
 mod tile;
 
-pub use light::{Light, fresnel, laid_on};
+pub use light::{Light, fresnel};
 pub use tile::Tile;
 
 use fastrand::Rng;

@@ -4,28 +4,31 @@ use std::hint::black_box;
 
 use fastrand::Rng;
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, DepthInterval, Dielectric,
-    Direction, Ellipsoid, Ggx, GgxLobe, Interleave, LambertLobe, NoFresnel, PhongLobe,
-    PixelRectangle, Roulette, Schlick, Sphere, TileGrid, TileRectangle, Vpl, Xi,
+    AnisotropicGgx, AnisotropicGgxLobe, Bound, Bounded, Camera, Conductor, ConstantLobe,
+    DepthInterval, Dielectric, Direction, Ellipsoid, Fresnel, FresnelMajorant, Ggx, GgxLobe,
+    Interleave, LambertLobe, Lobe, NoFresnel, PhongLobe, PixelRectangle, Proxy, Roulette, Schlick,
+    Sphere, Stretch, TileGrid, TileRectangle, TileTest, Vpl, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
 
-use crate::adversary::{Light, Tile, laid_on};
+use crate::adversary::{Light, Tile};
 use crate::bits::Bits;
+use crate::culling;
 use crate::probe::{self, Shape};
-use crate::reference::Vector;
-use crate::reference::{Brdf, Fresnel, Masking};
+use crate::reference::{self, Brdf, Masking, Vector};
 
 pub fn everything(bits: &mut Bits) {
     let cameras = cameras(bits);
     for camera in &cameras {
         probe::camera(camera);
     }
-    match bits.byte() % 5 {
+    match bits.byte() % 7 {
         0 => glossy(bits, &cameras),
         1 => shapes(bits, &cameras),
         2 => fresnel(bits),
         3 => sizes(bits),
+        4 => culling::everything(bits, &cameras),
+        5 => foreign(bits, &cameras),
         _ => others(bits, &cameras),
     }
 }
@@ -106,13 +109,15 @@ fn sizes(bits: &mut Bits) {
         let (subregion, local) = interleave.split_light(light);
         assert_eq!(interleave.join_light(subregion, local), light);
         black_box(interleave.lights_in(subregion, light));
+        let [min, max] = [(); 2].map(|()| [bits.size(), bits.size()]);
+        black_box(interleave.join_pixels(bits.size(), PixelRectangle { min, max }));
     }
 }
 
 fn others(bits: &mut Bits, cameras: &[Camera]) {
     if let Some([normal, _]) = directions(bits) {
         if let Ok(lobe) = LambertLobe::new(bits.number(), normal) {
-            probe::light(lobe, cameras);
+            probe::lambert_lobe(&lobe, cameras);
         }
     }
     if let Some([normal, incoming]) = directions(bits) {
@@ -125,6 +130,7 @@ fn others(bits: &mut Bits, cameras: &[Camera]) {
         .flatten()
         {
             probe::direction(lobe.axis());
+            probe::saved(&lobe);
             probe::light(lobe, cameras);
         }
     }
@@ -138,11 +144,63 @@ fn others(bits: &mut Bits, cameras: &[Camera]) {
     }
     black_box(TileRectangle::new(bits.pair(), bits.pair()).is_ok());
     let depths = [(); 5].map(|()| bits.number());
-    black_box(DepthInterval::new(depths[0], depths[1]).is_ok());
+    if let Ok(interval) = DepthInterval::new(depths[0], depths[1]) {
+        for slice in interval.exponential_slices(bits.byte().into()) {
+            assert!(slice.near() <= slice.far() && slice.far() <= interval.far());
+        }
+        black_box(interval.exponential_slices(u32::MAX).next());
+    }
     for interval in DepthInterval::modified_half_z(depths).into_iter().flatten() {
         assert!(0.0 <= interval.near() && interval.near() <= interval.far());
     }
     black_box(DepthInterval::half_z(depths));
+}
+
+/// A Fresnel factor that keeps no promise, and places that are none: what they come to
+/// means nothing, but nothing panics.
+fn foreign(bits: &mut Bits, cameras: &[Camera]) {
+    #[derive(Clone, Copy, Debug)]
+    struct Wild([f32; 5]);
+    impl Fresnel for Wild {
+        fn reflectance(&self, half_angle_cosine: f32) -> f32 {
+            if half_angle_cosine < self.0[0] {
+                self.0[1]
+            } else {
+                self.0[2]
+            }
+        }
+        fn majorant(&self) -> FresnelMajorant {
+            let [.., base, rise] = self.0;
+            FresnelMajorant { base, rise }
+        }
+    }
+    let wild = Wild([(); 5].map(|()| bits.number()));
+    let (Ok(ggx), Some([normal, incoming])) = (Ggx::new(bits.number()), directions(bits)) else {
+        return;
+    };
+    let lobe = GgxLobe::new(ggx, wild, normal, incoming);
+    black_box((
+        lobe.value(*normal),
+        lobe.extent(incoming),
+        lobe.max_reflected(),
+    ));
+    let (place, scale) = (bits.vector(), bits.number());
+    let placed = lobe.unit_bound().placed(place, scale);
+    black_box((placed.enclosing_sphere(), placed.sphere_at_focus()));
+    let bounds = [lobe.tight_bound(), lobe.triaxial_bound(), placed.into()];
+    for bound in bounds.map(|bound| bound.placed(place, scale)) {
+        black_box(Proxy::Icosphere.vertices(&bound).last());
+        for stretch in cameras
+            .iter()
+            .filter_map(|camera| Stretch::new(&bound, camera))
+        {
+            let tile = TileRectangle::new(bits.pair(), bits.pair());
+            let depths = DepthInterval::new(bits.number(), bits.number());
+            if let (Ok(tile), Ok(depths)) = (tile, depths) {
+                black_box(stretch.touches_exactly(&tile, &depths));
+            }
+        }
+    }
 }
 
 /// A camera that always is, and those that the bits make.
@@ -183,10 +241,10 @@ pub fn light_in_domain(bits: &mut Bits) {
     let (roughness, albedo, f0) = (bits.number(), bits.number(), bits.number());
     let (eta, kappa) = (bits.number(), bits.number());
     let fresnel = match bits.byte() % 6 {
-        0 if Schlick::new(f0).is_ok() => Fresnel::Schlick(f0),
-        1 if Dielectric::new(eta).is_ok() => Fresnel::Dielectric(eta),
-        2 if Conductor::new(eta, kappa).is_ok() => Fresnel::Conductor(eta, kappa),
-        _ => Fresnel::None,
+        0 if Schlick::new(f0).is_ok() => reference::Fresnel::Schlick(f0),
+        1 if Dielectric::new(eta).is_ok() => reference::Fresnel::Dielectric(eta),
+        2 if Conductor::new(eta, kappa).is_ok() => reference::Fresnel::Conductor(eta, kappa),
+        _ => reference::Fresnel::None,
     };
     let masking = if bits.byte() < 128 {
         Masking::HeightCorrelated
@@ -211,6 +269,14 @@ pub fn light_in_domain(bits: &mut Bits) {
                 masking,
             }
         }
+        5 => {
+            // As the exact model needs it.
+            let exponent = (16.0 * bits.number()).round() / 16.0;
+            if PhongLobe::new(albedo, exponent, Direction::Z, Direction::Z).is_err() {
+                return;
+            }
+            Brdf::Phong { albedo, exponent }
+        }
         _ if Ggx::new(roughness).is_ok() => Brdf::Ggx {
             roughness,
             fresnel,
@@ -222,7 +288,7 @@ pub fn light_in_domain(bits: &mut Bits) {
         return;
     };
     let light = Light {
-        brdf: laid_on(normal, brdf),
+        brdf: brdf.laid_on(Vector::from(*normal)),
         normal,
         incoming,
         position: bits.vector(),

@@ -65,7 +65,7 @@ fn of_lobes() {
     each_field(
         [0.5],
         |[albedo]| LambertLobe::new(albedo, Direction::Z),
-        |lobe| probe::light(*lobe, &cameras),
+        |lobe| probe::lambert_lobe(lobe, &cameras),
     );
     let vector = |v: [f32; 3]| Direction::new(Vec3::from_array(v));
     each_field([1.0, 2.0, 3.0], vector, |direction| {

@@ -1,22 +1,25 @@
 //! What must hold of everything that a constructor has accepted.
 
+use std::hint::black_box;
+
 use stochastic_light_culling::{
     AnisotropicGgxLobe, Bound, Bounded, Camera, CameraSphere, DepthInterval, Direction, Ellipsoid,
-    Fresnel, GgxLobe, Lobe, MaskingShadowing, PixelRectangle, Proxy, Roulette, Sphere, Spheroid,
-    Stretch, TileRectangle, TileTest, Vpl, Xi,
+    Fresnel, GgxLobe, GpuSphere, GpuStretch, HalfSpace, LambertLobe, Lobe, MaskingShadowing,
+    PixelRectangle, Proxy, Roulette, Sphere, Spheroid, Stretch, TileRectangle, TileTest, Vpl, Xi,
     glam::{Mat3, Vec2, Vec3},
+    stretch_matrix, stretch_rotation,
 };
 
 const IMAGE: [u32; 2] = [640, 480];
 
 /// Where shapes are put and by how much they are scaled: the ends of `f32`, and between.
-const PLACES: [Vec3; 4] = [
+pub const PLACES: [Vec3; 4] = [
     Vec3::ZERO,
     Vec3::new(1.0, -2.0, 3.0),
     Vec3::splat(1e-45),
     Vec3::new(f32::MAX, f32::MIN, 1e30),
 ];
-const SCALES: [f32; 6] = [0.0, 1e-45, f32::MIN_POSITIVE, 1.0, 1e30, f32::MAX];
+pub const SCALES: [f32; 6] = [0.0, 1e-45, f32::MIN_POSITIVE, 1.0, 1e30, f32::MAX];
 
 #[track_caller]
 fn number(x: f32) {
@@ -46,6 +49,7 @@ impl Shape for Sphere {
             if let Some(test) = CameraSphere::new(self, camera) {
                 vector(test.center());
                 number(test.radius_squared());
+                black_box(bytemuck::bytes_of(&GpuSphere::from(&test)));
                 touching(&test, camera);
             }
         }
@@ -83,8 +87,10 @@ pub fn ellipsoid(ellipsoid: &Ellipsoid, cameras: &[Camera]) {
         if let Some(test) = Stretch::new(ellipsoid, camera) {
             matrix(test.matrix());
             vector(test.center());
+            black_box(bytemuck::bytes_of(&GpuStretch::new(&test, 7)));
             touching(&test, camera);
         }
+        black_box(stretch_rotation(stretch_matrix(ellipsoid, camera)));
     }
 }
 
@@ -103,7 +109,7 @@ fn touching(test: &impl TileTest, camera: &Camera) {
     for rectangle in rectangles.into_iter().flatten() {
         for (near, far) in depths {
             let depths = DepthInterval::new(near, far).expect("in order");
-            std::hint::black_box(test.touches_exactly(&rectangle, &depths));
+            black_box(test.touches_exactly(&rectangle, &depths));
         }
     }
 }
@@ -120,33 +126,69 @@ pub fn fresnel(fresnel: &impl Fresnel) {
             assert!((0.0..=1.0).contains(&factor), "{factor} at {cosine}");
         }
     }
+    let majorant = fresnel.majorant();
+    assert!(
+        majorant.base >= 1e-30 && majorant.rise >= 0.0,
+        "{majorant:?}"
+    );
+}
+
+/// What is saved is what is read.
+pub fn saved<T>(value: &T)
+where
+    T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,
+{
+    let text = serde_json::to_string(value).expect("made of plain numbers");
+    let read: T = serde_json::from_str(&text).expect("of what a constructor has accepted");
+    assert_eq!(&read, value, "{text}");
 }
 
 pub fn ggx_lobe<F, G>(lobe: &GgxLobe<F, G>, cameras: &[Camera])
 where
-    F: Fresnel + std::fmt::Debug,
-    G: MaskingShadowing + std::fmt::Debug,
+    F: Fresnel + std::fmt::Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned,
+    G: MaskingShadowing + std::fmt::Debug + PartialEq,
 {
+    saved(lobe);
     assert!((0.0..=1.0).contains(&lobe.incident_cosine()));
     assert!((0.0..=1.0).contains(&lobe.max_fresnel()));
+    assert!((0.0..=1.0).contains(&lobe.max_reflected()));
+    for towards in [lobe.normal(), lobe.mirror_direction(), -lobe.incoming()] {
+        number(lobe.extent(towards));
+    }
     direction(lobe.mirror_direction());
     matrix(lobe.rotation());
     let away = *lobe.mirror_direction();
     values(lobe, &[away, -away]);
     light(*lobe, cameras);
-    ellipsoid(&lobe.tight_bound(), cameras);
+    ellipsoid(&lobe.triaxial_bound(), cameras);
+    everywhere(&lobe.tight_bound(), cameras);
+}
+
+pub fn lambert_lobe(lobe: &LambertLobe, cameras: &[Camera]) {
+    saved(lobe);
+    light(*lobe, cameras);
+    everywhere(&lobe.tight_bound(), cameras);
+}
+
+fn everywhere(bound: &impl Shape, cameras: &[Camera]) {
+    bound.probe(cameras);
     for position in PLACES {
         for scale in SCALES {
-            ellipsoid(&lobe.tight_bound().placed(position, scale), cameras);
+            bound.placed(position, scale).probe(cameras);
         }
     }
 }
 
 pub fn grained_lobe<F>(lobe: &AnisotropicGgxLobe<F>, cameras: &[Camera])
 where
-    F: Fresnel + std::fmt::Debug,
+    F: Fresnel + std::fmt::Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned,
 {
+    saved(lobe);
     let away = *lobe.mirror_direction();
+    for direction in PLACES.into_iter().chain([away, Vec3::NAN]) {
+        number(lobe.ggx().ndf(direction));
+        number(lobe.ggx().masking(direction));
+    }
     values(lobe, &[away, -away]);
     values(&lobe.separable(), &[away, -away]);
     light(*lobe, cameras);
@@ -156,12 +198,8 @@ where
 /// A lobe's light, from the dimmest to the brightest.
 pub fn light<L: Bounded<Bound: Shape> + std::fmt::Debug + Copy>(lobe: L, cameras: &[Camera]) {
     values(&lobe, &[]);
-    let unit = lobe.unit_bound();
-    unit.probe(cameras);
+    everywhere(&lobe.unit_bound(), cameras);
     for position in PLACES {
-        for scale in SCALES {
-            unit.placed(position, scale).probe(cameras);
-        }
         for flux in [0.0, 1e-45, 1.0, f32::MAX] {
             let light = Vpl::new(position, flux, lobe).expect("finite");
             for delta in [1e-45, 1.0, f32::MAX] {
@@ -197,6 +235,10 @@ pub fn roulette(roulette: &Roulette, xi: Xi) {
 }
 
 pub fn camera(camera: &Camera) {
+    saved(camera);
+    for position in PLACES {
+        touching(&HalfSpace::new(position, Direction::Z, camera), camera);
+    }
     matrix(camera.rotation());
     for point in PLACES {
         vector(camera.to_camera_space(point));

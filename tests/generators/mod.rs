@@ -144,7 +144,7 @@ pub fn two_roughnesses() -> impl Strategy<Value = [f32; 2]> {
     ]
 }
 
-/// The tangent may be parallel to the normal: see [`laid_on`].
+/// The tangent may be parallel to the normal: see [`Brdf::laid_on`].
 pub fn anisotropic_brdf() -> impl Strategy<Value = Brdf> {
     let tangent = unit_vector().prop_map(|v| Direction::new(v.to_f32()).unwrap());
     (two_roughnesses(), tangent, ggx_brdf()).prop_map(|(roughness, tangent, brdf)| {
@@ -161,25 +161,6 @@ pub fn anisotropic_brdf() -> impl Strategy<Value = Brdf> {
             masking,
         }
     })
-}
-
-/// `brdf` with another tangent, if it has one that is nearly parallel to the normal of `lit`.
-pub fn laid_on(lit: &Lit, brdf: Brdf) -> Brdf {
-    let normal = lit.surface.normal;
-    match brdf {
-        Brdf::Anisotropic {
-            roughness,
-            tangent,
-            fresnel,
-            masking,
-        } if normal.cross(Vector::from(*tangent)).length() < 2e-6 => Brdf::Anisotropic {
-            roughness,
-            tangent: Direction::new(normal.orthogonal().to_f32()).unwrap(),
-            fresnel,
-            masking,
-        },
-        other => other,
-    }
 }
 
 /// Phong's exponent: over decades, near 2, where the bound changes its form, and both ends.

@@ -1,6 +1,6 @@
 //! A view of the world, from an engine's two matrices.
 
-use stochastic_light_culling::glam::{Mat4, Vec4};
+use stochastic_light_culling::glam::{Mat4, Vec3, Vec4};
 
 use super::Vector;
 
@@ -29,6 +29,14 @@ impl View {
             columns[i] * x + columns[4 + i] * y + columns[8 + i] * z + columns[12 + i]
         });
         [clip[0] / clip[3], clip[1] / clip[3], clip[2] / clip[3]]
+    }
+
+    /// The same view from where `target` is ahead at `depth`, to rounding.
+    pub fn aimed_at(mut self, target: Vec3, depth: f64) -> Self {
+        let seen = self.from_world.transform_vector3(target);
+        let z = if self.left_handed { depth } else { -depth };
+        self.from_world.w_axis = (Vec3::new(0.0, 0.0, z as f32) - seen).extend(1.0);
+        self
     }
 }
 

@@ -37,6 +37,26 @@ pub enum Brdf {
     Constant,
 }
 
+impl Brdf {
+    /// The same with another tangent, if it has one that is nearly parallel to `normal`.
+    pub fn laid_on(self, normal: Vector) -> Self {
+        match self {
+            Self::Anisotropic {
+                roughness,
+                tangent,
+                fresnel,
+                masking,
+            } if normal.cross(Vector::from(*tangent)).length() < 2e-6 => Self::Anisotropic {
+                roughness,
+                tangent: Direction::new(normal.orthogonal().to_f32()).expect("of unit length"),
+                fresnel,
+                masking,
+            },
+            other => other,
+        }
+    }
+}
+
 /// A surface point and the direction its light comes from.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {

@@ -1,0 +1,208 @@
+//! Grids, batches and lists with numbers from bits: what culling in vectors makes of them is what the scalar
+//! functions make of each light and tile.
+
+use std::fmt::Debug;
+
+use stochastic_light_culling::{
+    BatchBound, BatchBuilder, BatchLobe, BatchShape, Camera, CameraSphere, Culler, DepthInterval,
+    DepthOrder, Direction, Ellipsoid, Ggx, GgxLobe, LambertLobe, LightBatch, LightLists, NoFresnel,
+    Roulette, Sphere, Stretch, TileDepths, TileGrid, TileRectangle, Vpl, Xi, glam::Mat3,
+};
+
+use crate::bits::Bits;
+use crate::probe::{PLACES, SCALES};
+
+pub fn everything(bits: &mut Bits, cameras: &[Camera]) {
+    let camera = &cameras[usize::from(bits.byte()) % cameras.len()];
+    order(bits, camera);
+    refused_grids(bits);
+    let Some(grid) = Grid::new(bits, camera) else {
+        return;
+    };
+    let stretch = |bound: Ellipsoid| Stretch::new(&bound, camera);
+    let sphere = |bound: Sphere| CameraSphere::new(&bound, camera);
+    match bits.byte() % 4 {
+        0 => {
+            let shape = Ellipsoid::new(bits.vector(), Mat3::IDENTITY, bits.vector());
+            if let Ok(shape) = shape {
+                grid.lists_bounds(bits, shape, stretch);
+            }
+        }
+        1 => {
+            if let Ok(shape) = Sphere::new(bits.vector(), bits.number()) {
+                grid.lists_bounds(bits, shape, sphere);
+            }
+        }
+        2 => {
+            let [normal, incoming] = [(); 2].map(|()| Direction::new(bits.vector()));
+            if let (Ok(normal), Ok(incoming), Ok(ggx)) = (normal, incoming, Ggx::new(bits.number()))
+            {
+                let lobe = GgxLobe::new(ggx, NoFresnel, normal, incoming);
+                grid.lists_lights(bits, lobe, |bound| stretch(bound.into()));
+            }
+        }
+        _ => {
+            let (albedo, normal) = (bits.number(), Direction::new(bits.vector()));
+            if let Ok(lobe) = normal.and_then(|normal| LambertLobe::new(albedo, normal)) {
+                grid.lists_lights(bits, lobe, sphere);
+            }
+        }
+    }
+}
+
+/// Any positions, no numbers among them, are all put in some order.
+fn order(bits: &mut Bits, camera: &Camera) {
+    let positions = [(); 5].map(|()| bits.vector());
+    let mut order = DepthOrder::new();
+    let mut order = order.of(positions, camera).to_vec();
+    order.sort_unstable();
+    assert_eq!(order, [0, 1, 2, 3, 4]);
+}
+
+/// More tiles than can be counted, or none: refused before anything is allocated or asked for.
+fn refused_grids(bits: &mut Bits) {
+    let (size, intervals) = ([bits.size(), bits.size()], bits.size());
+    let [columns, rows, slices] = [size[0], size[1], intervals].map(u128::from);
+    let slots = columns * rows * slices;
+    if slots == 0 || slots > u128::from(u32::MAX) {
+        let never = |_| -> TileRectangle { unreachable!("there is no such tile") };
+        assert!(TileDepths::new(size, intervals, never).is_err());
+    }
+}
+
+/// Tiles before a camera.
+struct Grid<'a> {
+    camera: &'a Camera,
+    tiles: TileDepths,
+    /// Tile by tile what was put into `tiles`.
+    seen: Vec<(TileRectangle, Vec<Option<DepthInterval>>)>,
+}
+
+impl<'a> Grid<'a> {
+    fn new(bits: &mut Bits, camera: &'a Camera) -> Option<Self> {
+        let image = [24, 8].map(|most| 1 + u32::from(bits.byte()) % most);
+        let grid = TileGrid::new(image, 1 + u32::from(bits.byte()) % 3).ok()?;
+        let rectangle = |tile| camera.tile_rectangle(image, grid.pixels(tile));
+        let intervals = 1 + u32::from(bits.byte()) % 3;
+        let mut tiles = TileDepths::new(grid.size(), intervals, rectangle).ok()?;
+        let few = [(); 4].map(|()| bits.number());
+        let mut seen = Vec::new();
+        for (tile, which) in grid.tiles().zip(0_usize..) {
+            let [a, b] = [few[which % 4], few[(which / 3) % 4]];
+            let given = [
+                DepthInterval::new(a, b).ok(),
+                DepthInterval::around([a, b, 1.0]),
+                None,
+                DepthInterval::around(few),
+            ];
+            let given = &given[which % 2..][..intervals as usize];
+            tiles.set(tile, given.iter().copied());
+            for depth in few {
+                let holds = |interval: &Option<DepthInterval>| {
+                    interval.is_some_and(|seen| seen.near() <= depth && depth <= seen.far())
+                };
+                let first = given.iter().position(holds).map(|which| which as u32);
+                assert_eq!(tiles.interval_of(tile, depth), first);
+            }
+            seen.push((rectangle(tile), given.to_vec()));
+        }
+        Some(Self {
+            camera,
+            tiles,
+            seen,
+        })
+    }
+
+    /// Copies of a bound from nowhere to everywhere.
+    fn lists_bounds<B>(&self, bits: &mut Bits, bound: B, shape: impl Fn(B) -> Option<B::Shape>)
+    where
+        B: BatchBound<Shape: PartialEq + Debug>,
+    {
+        let places = PLACES.into_iter();
+        let places = places.flat_map(|place| SCALES.map(|scale| (place, scale)));
+        let numbered = (0..).zip(places.clone());
+        let given = numbered.map(|(number, (place, scale))| (number, &bound, place, scale));
+        let mut batch = LightBatch::new();
+        let roulette = roulette(bits);
+        builder(bits, &roulette, self.camera).add_placed(given, &mut batch);
+        let shapes = places.map(|(place, scale)| shape(bound.placed(place, scale)));
+        self.lists(bits, &batch, shapes);
+    }
+
+    /// Lights from the dimmest to the brightest.
+    fn lists_lights<L>(
+        &self,
+        bits: &mut Bits,
+        lobe: L,
+        shape: impl Fn(L::Bound) -> Option<L::Shape>,
+    ) where
+        L: BatchLobe<Shape: PartialEq + Debug>,
+    {
+        let (roulette, xi) = (roulette(bits), Xi::new(bits.number()));
+        let xi = xi.unwrap_or(Xi::hashed(1, 2, 3));
+        let places = PLACES.into_iter();
+        let lights: Vec<_> = places
+            .flat_map(|place| [0.0, 1e-45, 1.0, f32::MAX].map(|flux| (place, flux)))
+            .map(|(place, flux)| Vpl::new(place, flux, lobe).expect("finite"))
+            .collect();
+        let given = (0..).zip(&lights);
+        let given = given.map(|(number, light)| (number, light, xi));
+        let mut batch = LightBatch::new();
+        builder(bits, &roulette, self.camera).add(given, &mut batch);
+        let shapes = lights.iter();
+        let shapes = shapes.map(|light| shape(light.bound(&roulette, xi)));
+        self.lists(bits, &batch, shapes);
+    }
+
+    /// Each tile's lists are of those shapes that touch it.
+    fn lists<T>(
+        &self,
+        bits: &mut Bits,
+        batch: &LightBatch<T>,
+        shapes: impl Iterator<Item = Option<T>>,
+    ) where
+        T: BatchShape + PartialEq + Debug,
+    {
+        let shapes: Vec<(u32, T)> = (0..)
+            .zip(shapes)
+            .filter_map(|(number, shape)| Some((number, shape?)))
+            .collect();
+        assert_eq!(batch.iter().collect::<Vec<_>>(), shapes);
+        let (mut lists, lanes) = (LightLists::new(), bits.byte());
+        let cullers = [
+            Culler::new(),
+            Culler::with_lanes(lanes.into()),
+            Culler::new().without_blocks(),
+        ];
+        for (exact, mut culler) in cullers
+            .into_iter()
+            .flat_map(|culler| [(false, culler.clone()), (true, culler.with_exact_test())])
+        {
+            let counters = culler.cull(batch, &self.tiles, &mut lists).expect("few");
+            assert_eq!(counters.pairs, lists.len() as u64);
+            for (index, (rectangle, intervals)) in self.seen.iter().enumerate() {
+                let columns = self.tiles.size()[0] as usize;
+                let tile = [index % columns, index / columns].map(|n| n as u32);
+                for (interval, depths) in (0..).zip(intervals) {
+                    let touching = shapes.iter().filter(|(_, shape)| match depths {
+                        Some(depths) if exact => shape.touches_exactly(rectangle, depths),
+                        Some(depths) => shape.touches(rectangle, depths),
+                        None => false,
+                    });
+                    let numbers = touching.map(|(number, _)| number);
+                    assert!(numbers.eq(lists.of(tile, interval)), "{depths:?}");
+                }
+            }
+            // Of a tile that there may not be.
+            let _ = lists.of([bits.size(), bits.size()], bits.size());
+        }
+    }
+}
+
+fn roulette(bits: &mut Bits) -> Roulette {
+    Roulette::new(bits.number()).unwrap_or(Roulette::new(1.0).expect("positive"))
+}
+
+fn builder(bits: &mut Bits, roulette: &Roulette, camera: &Camera) -> BatchBuilder {
+    BatchBuilder::new(roulette, camera).with_lanes(bits.byte().into())
+}

@@ -1,0 +1,2 @@
+//! The README's programs, again.
+#![doc = include_str!("../../README.md")]
