@@ -8,6 +8,8 @@
 #[path = "../tests/certificate/mod.rs"]
 mod certificate;
 mod command;
+#[path = "tabulate/fit.rs"]
+mod fit;
 #[path = "tabulate/make.rs"]
 mod make;
 #[path = "output/progress.rs"]
