@@ -4,7 +4,7 @@
 mod certificate;
 
 use certificate::taylor::{PerVariable, VARIABLES};
-use certificate::{Interval, Real, Taylor};
+use certificate::{Angles, Interval, Real, Taylor, root};
 use fastrand::Rng;
 
 const CASES: usize = 2000;
@@ -33,22 +33,21 @@ fn rest(form: &Taylor) -> f64 {
     form.rest.iter().sum()
 }
 
-/// A form about `constant` that varies by about `size`, with squares, products and a rest.
+/// A form about `constant` that varies by about `size`, with squares and products, a rest, or both.
 fn form(rng: &mut Rng, constant: f64, size: f64) -> Taylor {
-    let variable = |rng: &mut Rng, i| {
-        let reach = size * rng.f64();
-        Taylor::variable(Interval::new(-reach, reach), i)
-    };
+    let (polynomial, rest) = [(1.0, 0.0), (0.0, 1.0), (0.8, 0.2)][rng.usize(..3)];
     let mut sum = Taylor::constant(constant);
     for i in 0..VARIABLES {
-        let (a, b) = (
-            variable(rng, i),
-            variable(rng, rng.clone().usize(..VARIABLES)),
-        );
-        sum = sum + a * (0.4 * side(rng)) + a * b * (0.4 * side(rng));
+        let pair = [i, rng.usize(..VARIABLES)];
+        let [a, b] = pair.map(|i| {
+            let reach = size.sqrt() * rng.f64();
+            Taylor::variable(Interval::new(-reach, reach), i)
+        });
+        let [first, second] = [0, 1].map(|_| 0.3 * polynomial * side(rng));
+        sum = sum + a * (size.sqrt() * first) + a * b * second;
     }
     let shares = [0.2; VARIABLES];
-    sum.widened(0.1 * size * rng.f64(), shares)
+    sum.widened(rest * size * rng.f64(), shares)
 }
 
 /// Checks `result` against `exact`, of functions that the `inputs` contain.
@@ -145,15 +144,42 @@ fn what_stands_in_for_a_root_is_no_less() {
     for _ in 0..CASES {
         let constant = side(&mut rng);
         let input = form(&mut rng, constant, 1.0);
-        let high = input.range().high;
-        if high <= 0.0 {
+        if input.range().high <= 0.0 {
             continue;
         }
-        let about = input.constant.max(0.5 * high);
-        let result = input.above_root(about);
+        let (result, _) = root(&input);
         check(&mut rng, "root", &[input], &result, |x, value, off| {
             x[0] < 0.0 || value + off >= x[0].sqrt()
         });
+    }
+}
+
+/// Over boxes of any size, at the corner too where τ has no derivative.
+#[test]
+fn angles_contain() {
+    let mut rng = Rng::with_seed(5);
+    for _ in 0..CASES {
+        let width = 0.5_f64.powi(rng.i32(2..10));
+        let mut side_of = |least: f64, most: f64| {
+            let low = (least + (most - least) * rng.f64()).min(most - width);
+            Interval::new(low, low + width)
+        };
+        let (x, mut y) = (side_of(0.0, 1.0), side_of(0.0, 2.0));
+        if rng.u8(..4) == 0 {
+            y = Interval::new(1.0 - 0.3 * width, 1.0 + 0.7 * width);
+        }
+        let (tau, sigma) = Angles::new(x, y).taylor(x, y);
+        for _ in 0..10 {
+            let [a, b] = [side(&mut rng), side(&mut rng)];
+            let there = [(x, a), (y, b)].map(|(at, u)| at.middle() + 0.5 * u * at.width());
+            let [x, y] = there.map(Interval::at);
+            let exact = Angles::new(x, y);
+            let u = [a, b, 0.0, 0.0, 0.0];
+            for (form, exact) in [(tau, exact.tau), (sigma, exact.sigma)] {
+                let off = (polynomial(&form, &u) - exact.middle()).abs();
+                assert!(off <= rest(&form) + 1e-13, "{off} at {there:?}: {form:?}");
+            }
+        }
     }
 }
 

@@ -19,7 +19,8 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// The ellipsoids over a box.
+    /// The ellipsoids over a box. The factors here are off by some 10⁻¹⁶, far less than what is left for the
+    /// interpolation in `f32`.
     pub fn ellipsoids(&self, b: &Box5) -> [Taylor; table::NUMBERS] {
         let share: [Taylor; 3] = from_fn(|i| {
             let over = 1.0 / (self.high[i] - self.low[i]);

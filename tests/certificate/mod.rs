@@ -31,7 +31,7 @@ pub use angles::Angles;
 pub use cell::{Box5, Cell};
 pub use interval::Interval;
 pub use lobe::{Lobe, Point, level, masked};
-pub use over_box::{Parameters, Verdict};
+pub use over_box::{Parameters, Verdict, root};
 pub use real::Real;
 pub use taylor::Taylor;
 

@@ -157,7 +157,7 @@ impl Parameters {
 }
 
 /// No less than s wherever there is one, and in which variables a constant replaces it.
-fn root(squared: &Taylor) -> (Taylor, PerVariable) {
+pub fn root(squared: &Taylor) -> (Taylor, PerVariable) {
     let Interval { low, high } = squared.range();
     if low < -0.25 * high {
         // Else what is below the horizon would be put behind the light, and outside.
