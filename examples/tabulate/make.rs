@@ -1,38 +1,73 @@
-//! The smallest ellipsoids at the knots, enlarged until samples between the knots are inside too.
+//! The ellipsoids at the knots, with as much margin as samples between the knots need, and more.
+//!
+//! In each frame a light's ellipsoid is scaled by 1/√ξ. A point at a distance d from the light is then
+//! inside for a share ρ²/d² of all ξ, ρ being the distance to the ellipsoid along the same ray, and a
+//! surface that it falls on takes the solid angle cos/d². However surfaces lie, what they have inside
+//! grows with ρ² over the solid angle, unlike the volume, with ρ³: that sum over the directions above
+//! the lit surface is made the least, and a little of the volume.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use rayon::prelude::*;
+use stochastic_light_culling::glam::DVec3;
 
 use crate::certificate::{Angles, Interval, Lobe, level, masked, place, table};
+use crate::fit::{Aim, Fit, Held, Ray};
 use crate::reference::Smallest;
 
-/// What the knots are enlarged by after all samples are inside.
-const MARGIN: f64 = 1.04;
 const SIZE: [usize; 3] = [table::ROUGHNESSES, table::INCIDENCES, table::REFLECTANCES];
+/// What ln V counts next to the logarithm of the sum of ρ².
+const VOLUME: f64 = 0.1;
+
+/// The share by which everything is scaled up about the ellipsoid's centre and yet inside.
+///
+/// By roughness, and by incidence or reflectance, whichever is more. Little where each per cent is up to
+/// eight of the lights per pixel; more for rough surfaces and dielectrics, where the paper's spheroid is far
+/// behind; more near normal incidence, where the spheroid of a metal is taken instead, and the surface
+/// follows the ellipsoid so closely that the proof would need most boxes.
+const MARGIN_BY_ROUGHNESS: [f64; SIZE[0]] =
+    [0.03, 0.004, 0.0, 0.003, 0.006, 0.02, 0.03, 0.03, 0.03];
+const MARGIN_BY_INCIDENCE: [f64; SIZE[1]] = [
+    0.03, 0.02, 0.012, 0.005, 0.001, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.001, 0.002, 0.003, 0.005,
+    0.005, 0.005, 0.005, 0.005, 0.005, 0.005,
+];
+const MARGIN_BY_REFLECTANCE: [f64; SIZE[2]] = [0.016, 0.016, 0.018, 0.018, 0.012, 0.0, 0.0];
+/// How strongly points are kept from the ellipsoid's surface, which makes the knots change smoothly.
+const STRENGTH: [f64; SIZE[0]] = [0.1, 0.05, 0.04, 0.06, 0.06, 0.06, 0.06, 0.06, 0.06];
 
 type Knot = [f64; table::NUMBERS];
 
 /// The table's numbers, in its order.
 pub fn table() -> Vec<f32> {
-    let mut knots: Vec<Knot> = all(SIZE)
-        .into_par_iter()
-        .map(|at| smallest(place(at)))
-        .collect();
+    let places = all(SIZE);
+    let fit = |growths: &[f64]| -> Vec<Knot> {
+        let knots = places.par_iter().zip(growths);
+        knots
+            .map(|(at, growth)| fitted(place(*at), growth.max(1.0)))
+            .collect()
+    };
+    let first = fit(&vec![1.0; places.len()]);
+    let mut knots = fit(&growths(&first));
+    let growths = growths(&knots);
+    for (knot, growth) in knots.iter_mut().zip(growths) {
+        for number in &mut knot[2..] {
+            *number *= growth.max(1.0);
+        }
+    }
+    knots.into_iter().flatten().map(|x| x as f32).collect()
+}
+
+/// The largest growth of the cells around each knot.
+fn growths(knots: &[Knot]) -> Vec<f64> {
     let cells = all(SIZE.map(|knots| knots - 1));
-    let growths: Vec<f64> = cells.par_iter().map(|cell| growth(&knots, *cell)).collect();
-    let mut most = vec![1.0_f64; knots.len()];
-    for (cell, growth) in cells.iter().zip(growths) {
+    let of_cells: Vec<f64> = cells.par_iter().map(|cell| growth(knots, *cell)).collect();
+    let mut most = vec![0.0_f64; knots.len()];
+    for (cell, growth) in cells.iter().zip(of_cells) {
         for corner in corners(*cell) {
             most[index(corner)] = most[index(corner)].max(growth);
         }
     }
-    for (knot, growth) in knots.iter_mut().zip(most) {
-        for number in &mut knot[2..] {
-            *number *= growth * MARGIN;
-        }
-    }
-    knots.into_iter().flatten().map(|x| x as f32).collect()
+    most
 }
 
 fn all([x, y, z]: [usize; 3]) -> Vec<[usize; 3]> {
@@ -56,16 +91,118 @@ fn corners(cell: [usize; 3]) -> [[usize; 3]; 8] {
     })
 }
 
-fn smallest(parameters: [f64; 3]) -> Knot {
-    let Smallest { center, shape } = Smallest::around(points(parameters, [160, 60]), 1e-4);
-    [center[0], center[1], shape[0], shape[1], shape[2], shape[3]]
+/// What ‖y‖² may be at most, at the light and far from it, and the strength of the barrier.
+struct Room {
+    near: f64,
+    far: f64,
+    strength: f64,
 }
 
-/// The factor by which the ellipsoids of a cell must grow to hold samples of the surface.
+impl Room {
+    fn new([x, y, z]: [f64; 3]) -> Self {
+        let incidence = y * 0.5 * (SIZE[1] - 1) as f64;
+        let least = f64::from(table::LEAST_ROOT);
+        let reflectance = (z - least) / (1.0 - least) * (SIZE[2] - 1) as f64;
+        let roughness = x * (SIZE[0] - 1) as f64;
+        let more = between(&MARGIN_BY_INCIDENCE, incidence)
+            .max(between(&MARGIN_BY_REFLECTANCE, reflectance));
+        let margin = 1.0 + between(&MARGIN_BY_ROUGHNESS, roughness) + more;
+        let far = margin.powi(-2);
+        Self {
+            near: 0.5 + 0.5 * far,
+            far,
+            strength: between(&STRENGTH, roughness),
+        }
+    }
+
+    fn at(&self, point: [f64; 3]) -> f64 {
+        let distance = DVec3::from(point).length().min(1.0);
+        let over = (1.0 - distance) / self.near + distance / self.far;
+        1.0 / over
+    }
+}
+
+/// Between the values at whole numbers, and the last from there on.
+fn between(values: &[f64], at: f64) -> f64 {
+    let i = (at as usize).min(values.len() - 2);
+    values[i] + (values[i + 1] - values[i]) * (at - i as f64).min(1.0)
+}
+
+/// Around the surface scaled up by `growth` about the ellipsoid's centre.
+fn fitted(parameters: [f64; 3], growth: f64) -> Knot {
+    let room = Room::new(parameters);
+    let points = points(parameters, [100, 40]);
+    let held: Vec<Held> = points
+        .iter()
+        .map(|point| Held {
+            point: DVec3::from(*point),
+            most: room.at(*point) / growth.powi(2),
+        })
+        .collect();
+    let Smallest { center, shape } = Smallest::around(points, 1e-2);
+    let shape = shape.map(|number| number * growth * 1.1 / room.far.sqrt());
+    let [along, slant, aside, across] = shape;
+    let aim = Aim {
+        points: &held,
+        rays: &rays(parameters),
+        volume: VOLUME,
+        strength: room.strength,
+    };
+    aim.reach(Fit::new([
+        center[0], center[1], along, slant, aside, across,
+    ]))
+    .numbers()
+}
+
+/// Directions above the lit surface, by the solid angle that they stand for, so that Σ w ρ² in the
+/// table's coordinates is the integral of ρ² in space.
+///
+/// A direction ν there is Dν in space, D = diag(1/α, 1, √L), and the integral ∫ ρ² ‖Dν‖⁻¹ dν. With
+/// ν₁ = αm sinh t and m = ‖(cosφ, √L sinφ)‖ it is nearly even in t.
+fn rays([x, y, _]: [f64; 3]) -> Vec<Ray> {
+    const STEPS: [u32; 2] = [24, 48];
+    /// Of the horizon, as a sine, so that no ray drops out at once.
+    const WIDTH: f64 = 0.05;
+    // For α → 0 all but what lies across the mirror direction would cease to count.
+    let x = x.clamp(0.15, 0.95);
+    let ((s, c), _) = angles(x, y);
+    let alpha = x * x;
+    let root = c.hypot(alpha * s);
+    let mut rays = Vec::new();
+    for j in 0..STEPS[0] {
+        let (sine, cosine) = (PI * (f64::from(j) + 0.5) / f64::from(STEPS[0])).sin_cos();
+        let m = cosine.hypot(root * sine);
+        let most = (1.0 / (alpha * m)).asinh();
+        for i in 0..STEPS[1] {
+            let t = most * ((2.0 * f64::from(i) + 1.0) / f64::from(STEPS[1]) - 1.0);
+            let first = alpha * m * t.sinh();
+            let rest = (1.0 - first * first).max(0.0).sqrt();
+            let along = DVec3::new(first, rest * cosine, rest * sine);
+            let in_space = along * DVec3::new(1.0 / alpha, 1.0, root);
+            let height = (c * in_space.x - s * in_space.y) / in_space.length();
+            let above = (0.5 + height / WIDTH).clamp(0.0, 1.0);
+            let weight = above * most * m * t.cosh() / in_space.length();
+            if weight > 0.0 {
+                rays.push(Ray { along, weight });
+            }
+        }
+    }
+    rays
+}
+
+/// Sine and cosine of θ and of δ, at √α and tan(θ/2) + tan(δ/2).
+fn angles(x: f64, y: f64) -> ((f64, f64), (f64, f64)) {
+    let Angles { tau, sigma } = Angles::new(Interval::at(x), Interval::at(y));
+    let angle = |half: Interval| (2.0 * half.middle().atan()).sin_cos();
+    (angle(tau), angle(sigma))
+}
+
+/// The factor by which the ellipsoids of a cell must grow to hold samples of the surface with their
+/// margin.
 fn growth(knots: &[Knot], cell: [usize; 3]) -> f64 {
     let ends = corners(cell).map(|corner| knots[index(corner)]);
     let (low, high) = (place(cell), place(cell.map(|i| i + 1)));
-    let mut most = 1.0_f64;
+    let mut most = 0.0_f64;
     for share in all([5, 5, 3]) {
         let t = [0, 1, 2].map(|i| share[i] as f64 / [4.0, 4.0, 2.0][i]);
         let knot: Knot = std::array::from_fn(|n| {
@@ -76,8 +213,9 @@ fn growth(knots: &[Knot], cell: [usize; 3]) -> f64 {
             (0..8).map(|c| weight(c) * ends[c][n]).sum()
         });
         let parameters = [0, 1, 2].map(|i| low[i] + (high[i] - low[i]) * t[i]);
-        for point in points(parameters, [60, 24]) {
-            most = most.max(level(1.0, point, &knot));
+        let room = Room::new(parameters);
+        for point in points(parameters, [90, 36]) {
+            most = most.max(level(1.0, point, &knot) / room.at(point));
         }
     }
     most.sqrt()
@@ -85,9 +223,7 @@ fn growth(knots: &[Knot], cell: [usize; 3]) -> f64 {
 
 /// Points of the isosurface at √α, tan(θ/2) + tan(δ/2) and ∜F0, and the light.
 fn points([x, y, z]: [f64; 3], [steps, steps_across]: [usize; 2]) -> Vec<[f64; 3]> {
-    let angles = Angles::new(Interval::at(x), Interval::at(y));
-    let angle = |half: Interval| (2.0 * half.middle().atan()).sin_cos();
-    let ((s, c), (sd, cd)) = (angle(angles.tau), angle(angles.sigma));
+    let ((s, c), (sd, cd)) = angles(x, y);
     let alpha = x * x;
     let rl = c.hypot(alpha * s);
     let aol = if s > 0.2 { sd / s } else { alpha / rl };
