@@ -89,21 +89,19 @@
 //! **If a tile, as the `f32` numbers of its rectangle and depth interval define it, contains a point p
 //! with ‖p − q‖ ≤ l_max(ω_o), in exact arithmetic on the `f32` numbers that were given, then
 //! [`touches`](TileTest::touches) and [`touches_exactly`](TileTest::touches_exactly) are true** of the
-//! stretched [`Spheroid`], of the triaxial ellipsoid, of that of an anisotropic lobe, of both of the
-//! spheroid's spheres, of the ellipsoid of a [`PhongLobe`], of a diffuse or constant light's [`Sphere`],
-//! of a diffuse light's tight ellipsoid, and of the [`HalfSpace`] above the light's surface. Directions
-//! stand for the unit vectors along them, and a point of the world for its image under the camera's
-//! matrix.
+//! stretched [`Spheroid`], of the triaxial ellipsoid, of the tight one from a table, of that of an
+//! anisotropic lobe, of both of the spheroid's spheres, of the ellipsoid of a [`PhongLobe`], of a diffuse
+//! or constant light's [`Sphere`], of a diffuse light's tight ellipsoid, and of the [`HalfSpace`] above
+//! the light's surface. Directions stand for the unit vectors along them, and a point of the world for
+//! its image under the camera's matrix.
 //!
 //! This holds for every α from 2⁻²⁰ to 1, every μ > 0, ranges from 10⁻¹² to 10¹², lights up to 10⁶
 //! ranges from the origin and the eye, ξ from 2⁻³², views of any rotation, handedness and offset with
 //! corners up to 89.7° off, lights around and behind the eye, and depth intervals of no thickness.
 //! Farther out a bound is merely large, the whole view if it must be. The one step that is not proved
-//! is the quasi-convexity of [`Conductor`]'s F, which a search bears out.
-//!
-//! The promise is not yet given for [`GgxLobe::tight_bound`]: that its table encloses between the knots
-//! too is proved for some of its cells, and elsewhere rests on samples, a margin of 4 % on top of them, and
-//! on the same search for lights that are lost, which finds none.
+//! is the quasi-convexity of [`Conductor`]'s F, which a search bears out. The ellipsoids of the table behind
+//! [`GgxLobe::tight_bound`], between whose knots it is interpolated, are proved to enclose by a computer,
+//! box by box: `examples/tabulate -- --prove`.
 //!
 //! What it costs: at α ≥ 0.01, and r at least 10⁻³ of the distance to eye and origin, ellipsoids grow
 //! by less than 0.1 % in volume on average; at α = 10⁻⁶ by a large factor. `examples/stability` prints

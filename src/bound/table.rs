@@ -1,6 +1,6 @@
 //! The smallest ellipsoids around GGX lobes, over three coordinates, and their interpolation.
 //!
-//! Made by `examples/tabulate.rs`, which can also prove cells of it (`tests/certificate`).
+//! Made by `examples/tabulate.rs`, which also proves that they enclose (`tests/certificate`).
 
 use glam::Vec4;
 

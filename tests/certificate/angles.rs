@@ -1,35 +1,46 @@
 //! The angle of incidence θ and δ, by the table's coordinates.
 
-use super::interval::Interval;
-use super::jet::Jet;
-use super::real::Real;
+use std::ops::{Mul, Sub};
 
-/// σ(1−τ²) − ατ(1−σ²), which falls as τ rises.
-fn residual(tau: Interval, alpha: f64, y: f64) -> Interval {
-    let one = Interval::at(1.0);
-    let sigma = Interval::at(y) - tau;
-    sigma * (one - tau.square()) - Interval::at(alpha) * tau * (one - sigma.square())
+use super::interval::Interval;
+use super::real::Real;
+use super::taylor::{TINY, Taylor};
+
+/// σ(1−τ²) − ατ(1−σ²), which falls as τ rises and σ = y − τ.
+fn residual<T: Copy + Sub<Output = T> + Mul<Output = T>>(one: T, tau: T, alpha: T, y: T) -> T {
+    let sigma = y - tau;
+    sigma * (one - tau * tau) - alpha * tau * (one - sigma * sigma)
 }
+
+/// How fast the residual does so.
+fn rate(tau: Interval, sigma: Interval, alpha: Interval) -> Interval {
+    let one = Interval::at(1.0);
+    one - tau.square() + tau * sigma * 2.0 * (one + alpha) + alpha * (one - sigma.square())
+}
+
 /// τ at given α and τ + σ, found by bisection and then verified.
 fn tau(alpha: f64, y: f64) -> Interval {
     let (least, most) = ((y - 1.0).max(0.0), y.min(1.0));
     let (mut lo, mut hi) = (least, most);
     for _ in 0..54 {
         let m = 0.5 * (lo + hi);
-        let s = y - m;
-        if s * (1.0 - m * m) - alpha * m * (1.0 - s * s) > 0.0 {
+        if residual(1.0, m, alpha, y) > 0.0 {
             lo = m;
         } else {
             hi = m;
         }
     }
+    let at = |tau: f64| {
+        let [one, tau, alpha, y] = [1.0, tau, alpha, y].map(Interval::at);
+        residual(one, tau, alpha, y)
+    };
     let mut e = 1e-14;
     let low = loop {
         let t = lo - e;
         if t <= least {
             break least;
         }
-        if residual(Interval::at(t), alpha, y).low >= 0.0 {
+        if at(t).low >= 0.0 {
             break t;
         }
         e *= 10.0;
@@ -40,7 +51,7 @@ fn tau(alpha: f64, y: f64) -> Interval {
         if t >= most {
             break most;
         }
-        if residual(Interval::at(t), alpha, y).high <= 0.0 {
+        if at(t).high <= 0.0 {
             break t;
         }
         e *= 10.0;
@@ -48,39 +59,10 @@ fn tau(alpha: f64, y: f64) -> Interval {
     Interval::new(low, high)
 }
 
-/// Cosine and sine of the angle whose half has the tangent `t` in [0, 1].
-pub fn half(t: Interval) -> (Interval, Interval) {
-    let one = Interval::at(1.0);
-    let c = |t: f64| {
-        let t = Interval::at(t).square();
-        (one - t) / (one + t)
-    };
-    let s = |t: f64| {
-        let t = Interval::at(t);
-        t * 2.0 / (one + t.square())
-    };
-    (
-        Interval::new(c(t.high).low, c(t.low).high).within(0.0, 1.0),
-        Interval::new(s(t.low).low, s(t.high).high).within(0.0, 1.0),
-    )
-}
-pub fn half_jet(t: Jet) -> (Jet, Jet) {
-    let one = Interval::at(1.0);
-    let u = one / (one + t.value.square());
-    let u2 = u.square();
-    let t_ = t.value;
-    (
-        t.chain(
-            |t| half(t).0,
-            -(t_ * u2) * 4.0,
-            u2 * (Interval::at(3.0) - u * 4.0) * 4.0,
-        ),
-        t.chain(
-            |t| half(t).1,
-            u * (u * 2.0 - one) * 2.0,
-            -(t_ * u2 * (u * 4.0 - one)) * 4.0,
-        ),
-    )
+/// Cosine and sine of the angle whose half has the tangent `t`.
+pub fn half(t: Taylor) -> (Taylor, Taylor) {
+    let over = (t.square() + Taylor::constant(1.0)).reciprocal() * 2.0;
+    (over - Taylor::constant(1.0), t * over)
 }
 
 /// τ = tan(θ/2) and σ = tan(δ/2), by their sum y and x = √α: tanδ = α tanθ is σ(1−τ²) = ατ(1−σ²).
@@ -91,7 +73,7 @@ pub struct Angles {
 }
 
 impl Angles {
-    /// τ falls as α rises and σ rises; both rise with y.
+    /// τ falls and σ rises as α rises; both rise with y.
     pub fn new(x: Interval, y: Interval) -> Self {
         let a = [
             x.low * x.low * (1. - 1e-15),
@@ -110,46 +92,35 @@ impl Angles {
             sigma: Interval::new(sl, sh),
         }
     }
-    /// The derivatives of the implicit function, whose denominator is D = 1−τ² + 2τσ(1+α) + α(1−σ²).
-    ///
-    /// ∂τ/∂y is in [0, 1], and |∂τ/∂x| = 2xτ(1−σ²)/D at most 1/√2: by the means' inequality D is at
-    /// least 2√(2τσ(1−τ²)) = 2√2 τx√(1−σ²).
-    pub fn jets(&self, x: Interval, y: Interval) -> (Jet, Jet) {
-        let mid = Angles::new(Interval::at(x.middle()), Interval::at(y.middle()));
-        let (rx, ry) = (Jet::variable(x, 0).first[0], Jet::variable(y, 0).first[0]);
-        let one = Interval::at(1.0);
-        let (t, s) = (self.tau, self.sigma);
-        let al = x.square();
-        let (ct, cs) = (one - t.square(), one - s.square());
-        let ts = t * s;
-        let d = ct + ts * (one + al) * 2.0 + al * cs;
-        let ty = ((ct + al * ts * 2.0) / d).within(0.0, 1.0);
-        let sy = one - ty;
-        let tx = (-(x * t * cs * 2.0) / d).within(-0.7072, 0.0);
-        let sx = -tx;
-        let mixed = |dt: Interval, ds: Interval| dt * s + t * ds;
-        let dy = -(t * ty) * 2.0 + (one + al) * mixed(ty, sy) * 2.0 - al * s * sy * 2.0;
-        let tyy = (-(t * ty) * 2.0 + al * mixed(ty, sy) * 2.0 - ty * dy) / d;
-        let dx = -(t * tx) * 2.0 + (one + al) * mixed(tx, sx) * 2.0 + x * ts * 4.0 + x * cs * 2.0
-            - al * s * sx * 2.0;
-        let mx = -(t * cs + x * tx * cs - x * ts * sx * 2.0) * 2.0;
-        let txx = (mx - tx * dx) / d;
-        let z = Interval::ZERO;
-        let (tx, ty, txx, tyy) = (tx * rx, ty * ry, txx * rx.square(), tyy * ry.square());
-        let (sx, sy) = (sx * rx, sy * ry);
-        (
-            Jet {
-                value: t,
-                middle: mid.tau,
-                first: [tx, ty, z, z, z],
-                second: [txx, tyy, z, z, z],
-            },
-            Jet {
-                value: s,
-                middle: mid.sigma,
-                first: [sx, sy, z, z, z],
-                second: [-txx, -tyy, z, z, z],
-            },
-        )
+
+    /// τ and σ as polynomials, τ by Newton's method, and then verified: by the mean value theorem it is off
+    /// by the residual over the rate that this falls at.
+    pub fn taylor(&self, x: Interval, y: Interval) -> (Taylor, Taylor) {
+        let (alpha, sum) = (Taylor::variable(x, 0).square(), Taylor::variable(y, 1));
+        let one = Taylor::constant(1.0);
+        let (x_there, y_there) = (x.middle(), y.middle());
+        let there = tau(x_there * x_there, y_there).middle();
+        let [tau_there, sigma_there, alpha_there] =
+            [there, y_there - there, x_there * x_there].map(Interval::at);
+        let over = 1.0 / rate(tau_there, sigma_there, alpha_there).middle();
+        let mut tau = Taylor::constant(there);
+        // The first step gets the linear terms right, and the second the quadratic ones.
+        for _ in 0..2 {
+            tau = (tau + residual(one, tau, alpha, sum) * over).polynomial();
+        }
+        let between = self.tau.hull(tau.range());
+        let least = rate(between, y - between, x.square()).low;
+        let off = residual(one, tau, alpha, sum).range().largest() / least * (1.0 + 1e-14);
+        // |∂τ/∂x| is at most 1/√2, and |∂τ/∂y| at most 1.
+        let (by_x, by_y) = (0.7 * x.width() + TINY, y.width() + TINY);
+        let all = by_x + by_y;
+        let shares = [by_x / all, by_y / all, 0.0, 0.0, 0.0];
+        let reach = 0.5 * self.tau.width() + f64::EPSILON;
+        let tau = if least > 0.0 && off < reach {
+            tau.widened(off, shares)
+        } else {
+            Taylor::constant(self.tau.middle()).widened(reach, shares)
+        };
+        (tau, sum - tau)
     }
 }

@@ -1,8 +1,6 @@
 //! Intervals of `f64`, rounded outward.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
-use super::real::Real;
+use std::ops::{Add, Mul, Sub};
 
 /// All numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,10 +24,6 @@ fn up(x: f64) -> f64 {
 }
 
 impl Interval {
-    pub const ZERO: Self = Self {
-        low: 0.0,
-        high: 0.0,
-    };
     pub const ALL: Self = Self {
         low: f64::NEG_INFINITY,
         high: f64::INFINITY,
@@ -38,117 +32,92 @@ impl Interval {
     pub fn new(low: f64, high: f64) -> Self {
         Self { low, high }
     }
+
     pub fn at(x: f64) -> Self {
         Self { low: x, high: x }
     }
+
     pub fn middle(self) -> f64 {
         0.5 * (self.low + self.high)
     }
+
     pub fn width(self) -> f64 {
         self.high - self.low
     }
+
     pub fn largest(self) -> f64 {
         self.low.abs().max(self.high.abs())
     }
-    pub fn hull(self, o: Self) -> Self {
+
+    pub fn hull(self, other: Self) -> Self {
         Self {
-            low: self.low.min(o.low),
-            high: self.high.max(o.high),
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
         }
     }
-}
 
-impl Real for Interval {
-    fn constant(x: f64) -> Self {
-        Self::at(x)
-    }
-    fn square(self) -> Self {
+    pub fn square(self) -> Self {
         let (a, b) = (self.low.abs(), self.high.abs());
         let least = if self.low <= 0.0 && self.high >= 0.0 {
             0.0
         } else {
-            down(a.min(b).powi(2)).max(0.0)
+            let least = a.min(b);
+            down(least * least).max(0.0)
         };
+        let most = a.max(b);
         Self {
             low: least,
-            high: up(a.max(b).powi(2)),
-        }
-    }
-    fn sqrt(self) -> Self {
-        Self {
-            low: down(self.low.max(0.0).sqrt()).max(0.0),
-            high: up(self.high.max(0.0).sqrt()),
-        }
-    }
-    fn within(self, low: f64, high: f64) -> Self {
-        Self {
-            low: self.low.max(low).min(high),
-            high: self.high.min(high).max(low),
+            high: up(most * most),
         }
     }
 }
+
 impl Add for Interval {
     type Output = Self;
-    fn add(self, o: Self) -> Self {
+
+    fn add(self, other: Self) -> Self {
         Self {
-            low: down(self.low + o.low),
-            high: up(self.high + o.high),
+            low: down(self.low + other.low),
+            high: up(self.high + other.high),
         }
     }
 }
+
 impl Sub for Interval {
     type Output = Self;
-    fn sub(self, o: Self) -> Self {
+
+    fn sub(self, other: Self) -> Self {
         Self {
-            low: down(self.low - o.high),
-            high: up(self.high - o.low),
+            low: down(self.low - other.high),
+            high: up(self.high - other.low),
         }
     }
 }
-impl Neg for Interval {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self {
-            low: -self.high,
-            high: -self.low,
-        }
-    }
-}
+
 impl Mul for Interval {
     type Output = Self;
-    fn mul(self, o: Self) -> Self {
-        let p = [
-            self.low * o.low,
-            self.low * o.high,
-            self.high * o.low,
-            self.high * o.high,
+
+    fn mul(self, other: Self) -> Self {
+        let ends = [
+            self.low * other.low,
+            self.low * other.high,
+            self.high * other.low,
+            self.high * other.high,
         ];
-        let lo = p[0].min(p[1]).min(p[2].min(p[3]));
-        let hi = p[0].max(p[1]).max(p[2].max(p[3]));
-        if p.iter().any(|x| x.is_nan()) {
+        if ends.iter().any(|x| x.is_nan()) {
             return Self::ALL;
         }
         Self {
-            low: down(lo),
-            high: up(hi),
+            low: down(ends.into_iter().fold(f64::INFINITY, f64::min)),
+            high: up(ends.into_iter().fold(f64::NEG_INFINITY, f64::max)),
         }
     }
 }
-impl Div for Interval {
-    type Output = Self;
-    fn div(self, o: Self) -> Self {
-        if o.low <= 0.0 && o.high >= 0.0 {
-            return Self::ALL;
-        }
-        self * Self {
-            low: down(1.0 / o.high),
-            high: up(1.0 / o.low),
-        }
-    }
-}
+
 impl Mul<f64> for Interval {
     type Output = Self;
-    fn mul(self, o: f64) -> Self {
-        self * Self::at(o)
+
+    fn mul(self, factor: f64) -> Self {
+        self * Self::at(factor)
     }
 }

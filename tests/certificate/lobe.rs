@@ -1,7 +1,5 @@
 //! The isosurface in the table's coordinates, as `src/bound/smallest.rs` has it.
 
-use super::interval::Interval;
-use super::jet::Jet;
 use super::real::Real;
 
 /// A lobe by α, the cosines and sines of θ and δ, √L and α/√L.
@@ -15,9 +13,10 @@ pub struct Lobe<T> {
     pub aol: T,
 }
 
-/// Of a half vector: ζ, the half angle's cosine, N and Nμ_o/√L.
+/// Of a half vector: ζ, `a` as there, the half angle's cosine t = a√(L/N), N and Nμ_o/√L.
 pub struct Point<T> {
     pub z: [T; 3],
+    pub a: T,
     pub t: T,
     pub n: T,
     pub e: T,
@@ -29,7 +28,7 @@ impl<T: Real> Lobe<T> {
         let alpha2 = self.alpha.square();
         let a = self.cd * m3 - self.sd * m1;
         let e = a * m3 * 2.0 - self.cd * n;
-        let t = (self.rl * a / n.sqrt()).within(0.0, 1.0);
+        let t = self.rl * a * n.reciprocal_root();
         let c2 = self.c.square() * 2.0 - one;
         let (m11, m22) = (m1.square(), m2.square());
         let z1 = m3.square() - alpha2 * (m11 + c2 * m22);
@@ -37,47 +36,14 @@ impl<T: Real> Lobe<T> {
         let z3 = m2 * a * 2.0;
         Point {
             z: [z1, z2, z3],
+            a,
             t,
             n,
             e,
         }
     }
 }
-/// (1 − t)⁵.
-pub fn fifth_of_rest(t: Interval) -> Interval {
-    let r = (Interval::at(1.0) - t).within(0.0, 1.0);
-    let p = |x: f64| {
-        let x = Interval::at(x);
-        x.square().square() * x
-    };
-    Interval::new(p(r.low).low.max(0.0), p(r.high).high)
-}
-pub fn fifth_of_rest_jet(t: Jet) -> Jet {
-    let r = (Interval::at(1.0) - t.value).within(0.0, 1.0);
-    let s = r.square();
-    t.chain(fifth_of_rest, -s.square() * 5.0, s * r * 20.0)
-}
-/// F0 = z⁴.
-pub fn f0(z: Interval) -> Interval {
-    z.square().square().within(0.0, 1.0)
-}
-/// F/F(μ), which as a function of F0 is monotone.
-pub fn phi(f0: Interval, et: Interval, ec: Interval) -> Interval {
-    let ratio = |f: f64, t: f64, c: f64| {
-        let f = Interval::at(f);
-        let r = Interval::at(1.0) - f;
-        (f + r * Interval::at(t)) / (f + r * Interval::at(c))
-    };
-    Interval::new(
-        ratio(f0.low, et.low, ec.high)
-            .low
-            .min(ratio(f0.high, et.low, ec.high).low)
-            .max(0.0),
-        ratio(f0.low, et.high, ec.low)
-            .high
-            .max(ratio(f0.high, et.high, ec.low).high),
-    )
-}
+
 /// ‖y‖² of the point sζ.
 pub fn level<T: Real>(s: T, z: [T; 3], k: &[T; 6]) -> T {
     let y1 = (s * z[0] - k[0]) / k[2];
@@ -85,6 +51,7 @@ pub fn level<T: Real>(s: T, z: [T; 3], k: &[T; 6]) -> T {
     let y3 = s * z[2] / k[5];
     y1.square() + y2.square() + y3.square()
 }
+
 /// G2/G1, a smooth function a little below the horizon too.
 pub fn masked<T: Real>(l: &Lobe<T>, p: &Point<T>) -> T {
     let one = T::constant(1.0);

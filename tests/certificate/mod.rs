@@ -1,40 +1,46 @@
 //! The proof that the ellipsoids of the table enclose the isosurface, cell by cell.
 //!
 //! A cell has three parameters, and the surface two: over the five together it is to be shown that
-//! ‖y‖² ≤ 1 for the point sζ = c + A y, wherever it is above the horizon. A box of them is done
+//! ‖y‖² ≤ 1 for the point sζ = c + A y, wherever it is above the horizon. Over a box of them ‖y‖² is
+//! calculated as a polynomial of the second degree and what that is off by at most ([`taylor`]), and the
+//! box is done if either all of it is below the horizon, or the polynomial is low enough, which for the
+//! most part is a matter of its 32 corners. Else it is halved where most is lost.
 //!
-//! - if all of it is below the horizon,
-//! - if interval arithmetic with the largest s says so, or
-//! - if ‖y‖² at its 32 corners, plus what it can be above a product of linear functions between them,
-//!   says so: for a function with second derivatives ∂ᵢ² ≥ −κᵢ that is Σ κᵢ wᵢ²/8, wᵢ being the widths.
-//!   As s has no derivative at the horizon, the tangent (s² + q)/(2√q) ≥ s stands in for it.
+//! Where s or its factors have no such polynomial, as s has none at the horizon, something larger stands
+//! in for it. That is allowed once the light is shown to be inside: an ellipsoid that contains the light
+//! and Sζ contains all between them, and so sζ for any s ≤ S.
 //!
-//! Else it is halved where it bends most. Both of the latter need the light itself inside, which is
-//! shown first. All is rounded outward.
+//! All is rounded outward.
 #![allow(dead_code, unused_imports, reason = "each user needs a part")]
 
 mod angles;
 mod cell;
+mod chain;
 mod interval;
-mod jet;
 mod lobe;
+mod operators;
 mod over_box;
 mod real;
 #[path = "../../src/bound/table.rs"]
 pub mod table;
+pub mod taylor;
+
+use std::array::from_fn;
 
 pub use angles::Angles;
-pub use cell::Cell;
+pub use cell::{Box5, Cell};
 pub use interval::Interval;
-pub use lobe::{Lobe, level, masked};
-
+pub use lobe::{Lobe, Point, level, masked};
+pub use over_box::{Parameters, Verdict, root};
 pub use real::Real;
+pub use taylor::Taylor;
 
-use cell::Box5;
-use jet::VARIABLES;
+use taylor::{PerVariable, VARIABLES};
 
 /// What ‖y‖² is shown to be at most: the rest is for rounding to `f32`.
 const MOST: f64 = 1.0 - 2e-4;
+/// No box is narrower by that in one variable than in another, in shares of all there is.
+const NARROWEST: f64 = 1.0 / 4096.0;
 
 /// Where a cell is left, or is not shown not to be.
 #[derive(Clone, Copy, Debug)]
@@ -43,13 +49,18 @@ pub struct Doubt {
     pub parameters: [f64; 3],
 }
 
-impl Doubt {
-    fn of(b: &Box5) -> Self {
-        Self {
-            parameters: [b[0].middle(), b[1].middle(), b[2].middle()],
-        }
-    }
-}
+/// Half vectors m = (cosψ sinφ, sinψ, cosψ cosφ), by the tangents of φ/2 and ψ/2: those across the plane of
+/// incidence are alike.
+const HALF_VECTORS: [Interval; 2] = [
+    Interval {
+        low: -1.0,
+        high: 1.0,
+    },
+    Interval {
+        low: 0.0,
+        high: 1.0,
+    },
+];
 
 /// The number of boxes that it takes to show that the ellipsoids of `cell` enclose the surface.
 ///
@@ -58,26 +69,32 @@ impl Doubt {
 /// The first doubt after `limit` boxes.
 pub fn prove(cell: &Cell, limit: usize) -> Result<usize, Doubt> {
     let mut count = 0;
-    let unit = Interval::new(0.0, 1.0);
     let [x, y, z] = [0, 1, 2].map(|i| Interval::new(cell.low[i], cell.high[i]));
-    let whole = [x, y, z, unit, unit];
+    let [p, q] = HALF_VECTORS;
+    let whole = [x, y, z, p, q];
     halve_until(whole, &mut count, limit, |b| {
-        let ellipsoid = cell.ellipsoids(b).map(|jet| jet.value);
-        let light = level(Interval::at(0.0), [Interval::ZERO; 3], &ellipsoid);
-        (light.high <= MOST)
-            .then_some(())
-            .ok_or([b[0], b[1], b[2]].map(Interval::width))
-            .map_err(|[x, y, z]| [x, y, z, 0.0, 0.0])
+        if Parameters::new(cell, b).level_of_light() <= MOST {
+            return Ok(());
+        }
+        let [x, y, z] = [b[0], b[1], b[2]].map(Interval::width);
+        Err([x, y, z, 0.0, 0.0])
     })?;
-    for sign in [1.0, -1.0] {
-        let mut known = ([x, y], Angles::new(x, y));
-        halve_until(whole, &mut count, limit, |b| {
-            if known.0 != [b[0], b[1]] {
-                known = ([b[0], b[1]], Angles::new(b[0], b[1]));
-            }
-            is_enclosed(cell, &known.1, b, sign)
-        })?;
-    }
+    let mut parameters = Parameters::new(cell, &whole);
+    halve_until(whole, &mut count, limit, |b| {
+        if !parameters.are_of(b) {
+            parameters = Parameters::new(cell, b);
+        }
+        match parameters.verdict(b) {
+            Verdict::BelowHorizon => Ok(()),
+            Verdict::Level { most, .. } if most <= MOST => Ok(()),
+            Verdict::Level { most, blame } if most.is_finite() => Err(blame),
+            Verdict::Level { .. } => Err(from_fn(|i| {
+                // The surface first.
+                let weight = if i < 3 { 0.3 } else { 1.0 };
+                weight * b[i].width() / whole[i].width()
+            })),
+        }
+    })?;
     Ok(count)
 }
 
@@ -86,18 +103,23 @@ fn halve_until(
     whole: Box5,
     count: &mut usize,
     limit: usize,
-    mut check: impl FnMut(&Box5) -> Result<(), [f64; VARIABLES]>,
+    mut check: impl FnMut(&Box5) -> Result<(), PerVariable>,
 ) -> Result<(), Doubt> {
     let mut boxes = vec![whole];
     while let Some(b) = boxes.pop() {
         *count += 1;
-        let Err(scores) = check(&b) else { continue };
+        let Err(blame) = check(&b) else { continue };
         if *count > limit {
-            return Err(Doubt::of(&b));
+            return Err(Doubt {
+                parameters: [b[0], b[1], b[2]].map(Interval::middle),
+            });
         }
+        let shares: PerVariable = from_fn(|i| b[i].width() / whole[i].width());
+        let widest = shares.into_iter().fold(0.0, f64::max);
         let worst = (0..VARIABLES)
-            .max_by(|i, j| scores[*i].total_cmp(&scores[*j]))
-            .expect("there are variables");
+            .filter(|i| shares[*i] >= NARROWEST * widest)
+            .max_by(|i, j| blame[*i].total_cmp(&blame[*j]))
+            .expect("the widest is wide enough");
         let middle = b[worst].middle();
         let (mut lower, mut upper) = (b, b);
         lower[worst].high = middle;
@@ -105,72 +127,6 @@ fn halve_until(
         boxes.extend([lower, upper]);
     }
     Ok(())
-}
-
-/// Nothing if the box is done, else how much each variable is to blame.
-fn is_enclosed(cell: &Cell, angles: &Angles, b: &Box5, sign: f64) -> Result<(), [f64; VARIABLES]> {
-    let ellipsoids = cell.ellipsoids(b);
-    let highest = over_box::highest_level(angles, b, sign, &ellipsoids.map(|jet| jet.value));
-    if highest.is_none_or(|level| level <= MOST) {
-        return Ok(());
-    }
-    let by_width = Err(std::array::from_fn(|i| {
-        let share = if i < 3 {
-            0.3 / (cell.high[i] - cell.low[i])
-        } else {
-            1.0
-        };
-        b[i].width() * share
-    }));
-    let corners = corners(cell, b, sign);
-    let low = corners
-        .iter()
-        .map(|((s, _), _)| s.low)
-        .fold(f64::INFINITY, f64::min);
-    let high = corners.iter().map(|((s, _), _)| s.high).fold(0.0, f64::max);
-    if !(low.is_finite() && high.is_finite()) {
-        return by_width;
-    }
-    // Any q will do; this one touches s where it matters.
-    let q = (0.5 * (low + high)).max(0.25 * high).max(1e-4);
-    let squared = over_box::squared_jet(angles, b, sign);
-    // In units of half a width the bound is Σ κᵢ/2.
-    let bends = over_box::bends(squared, q, &ellipsoids).map(|bend| 0.5 * bend);
-    let bend: f64 = bends.iter().sum();
-    if !bend.is_finite() {
-        return by_width;
-    }
-    let most = corners
-        .iter()
-        .map(|((squared, z), ellipsoid)| {
-            let s = (*squared + Interval::at(q)) * Interval::at(0.5 / q.sqrt());
-            level(s, *z, ellipsoid).high
-        })
-        .fold(0.0, f64::max);
-    if (most + bend) * (1.0 + 1e-12) <= MOST {
-        Ok(())
-    } else {
-        Err(bends)
-    }
-}
-
-/// s², ζ and the ellipsoid at the corners of a box.
-fn corners(cell: &Cell, b: &Box5, sign: f64) -> Vec<(over_box::Squared<Interval>, [Interval; 6])> {
-    let end =
-        |i: usize, side: usize| Interval::at(if side & 1 == 1 { b[i].high } else { b[i].low });
-    let mut corners = Vec::with_capacity(32);
-    for side in 0..4 {
-        let (x, y) = (end(0, side), end(1, side >> 1));
-        let angles = Angles::new(x, y);
-        for z in [end(2, 0), end(2, 1)] {
-            let ellipsoid = cell.ellipsoids(&[x, y, z, x, x]).map(|jet| jet.value);
-            for side in 0..4 {
-                let point = [x, y, z, end(3, side), end(4, side >> 1)];
-                corners.push((over_box::squared(&angles, &point, sign), ellipsoid));
-            }
-        }
-    }
-    corners
 }
 
 impl Cell {
@@ -194,7 +150,7 @@ impl Cell {
             table::knot(at).map(f64::from)
         };
         Self {
-            knots: std::array::from_fn(corner),
+            knots: from_fn(corner),
             low: place(knot),
             high: place(knot.map(|i| i + 1)),
         }

@@ -1,5 +1,5 @@
-//! The arithmetic that the lobe's formulas need, so that they are written once: for numbers, for
-//! intervals, and for intervals with derivatives.
+//! The arithmetic that the lobe's formulas need, so that they are written once: for numbers, and for
+//! functions over a box.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -16,8 +16,7 @@ pub trait Real:
     fn constant(x: f64) -> Self;
     fn square(self) -> Self;
     fn sqrt(self) -> Self;
-    /// Cut to [low, high], in which it is known to be.
-    fn within(self, low: f64, high: f64) -> Self;
+    fn reciprocal_root(self) -> Self;
 }
 
 impl Real for f64 {
@@ -33,7 +32,7 @@ impl Real for f64 {
         self.sqrt()
     }
 
-    fn within(self, low: f64, high: f64) -> Self {
-        self.clamp(low, high)
+    fn reciprocal_root(self) -> Self {
+        1.0 / self.sqrt()
     }
 }

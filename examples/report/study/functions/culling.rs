@@ -70,7 +70,10 @@ fn stretch(
     bench.add(
         ("bounds", name),
         |case| (*case, case.lobe(metal)),
-        |input| (placed(input), Stretch::new(&placed(input), &camera)),
+        |input| {
+            let ellipsoid = placed(input);
+            (ellipsoid, Stretch::new(&ellipsoid, &camera))
+        },
         |_, (ellipsoid, stretch)| {
             let Some(stretch) = stretch else {
                 return f64::NAN;
