@@ -130,6 +130,13 @@ pub(crate) fn ellipsoid(roughness: f32, incidence: f32, reflectance: Option<f32>
 const TOWARDS_INCIDENCE: usize = REFLECTANCES;
 const TOWARDS_ROUGHNESS: usize = INCIDENCES * REFLECTANCES;
 
+/// The number of the knot (i, j, k) in the table, from a sum with [`WHOLE`].
+#[cfg(feature = "cull")]
+#[inline]
+pub(crate) fn first_knot(number: f32) -> usize {
+    low_bits(number, KNOTS - 1 - TOWARDS_ROUGHNESS - TOWARDS_INCIDENCE)
+}
+
 /// What is found from the `first` knot towards the next ones, by these shares of the way along
 /// √α, tan(θ_i/2) + tan(δ/2), and ∜F0 if that is not at its last knot: (c₁, c₂, A₁₁, A₂₁) and
 /// (A₂₂, A₃₃, 0, 0).

@@ -1,7 +1,5 @@
 //! Ellipsoids, and lights whose ellipsoid is found one by one.
 
-use core::marker::PhantomData;
-
 use fearless_simd::{Simd, SimdBase};
 use glam::Vec3;
 
@@ -10,8 +8,7 @@ use super::vector::Vectors;
 use super::view::Ellipsoids;
 use crate::cull::shape::Lane;
 use crate::{
-    AnisotropicGgxLobe, Bound, Bounded, Ellipsoid, Fresnel, GgxLobe, MaskingShadowing, Stretch,
-    Vpl, Xi,
+    AnisotropicGgxLobe, Bound, Bounded, Ellipsoid, Fresnel, MaskingShadowing, Stretch, Vpl, Xi,
 };
 
 /// The numbers of an ellipsoid: both parts of the centre, the columns of R and the semi-axes.
@@ -165,46 +162,6 @@ impl<F: Fresnel, G: MaskingShadowing> Source for AnisotropicGgxLobe<F, G> {
     #[inline]
     fn may_reach(light: &Self::Light, _: Xi) -> bool {
         light.flux() > 0.0 && light.lobe().incident_cosine() > 0.0
-    }
-
-    #[inline(always)]
-    fn shapes<S: Simd>(
-        simd: S,
-        numbers: &OfLight<S::f32s>,
-        _: &[()],
-        frame: &Frame,
-    ) -> (OfShape<S, Stretch>, S::mask32s) {
-        lit_ellipsoids(simd, numbers, frame)
-    }
-}
-
-/// The tighter bound of a GGX lobe.
-#[derive(Clone, Copy, Debug)]
-pub struct Tight<F, G>(PhantomData<(F, G)>);
-
-impl<F: Fresnel, G: MaskingShadowing> Source for Tight<F, G> {
-    type Light = Vpl<GgxLobe<F, G>>;
-    type Given = Xi;
-    type Shape = Stretch;
-    type Numbers<T: Lane> = OfLight<T>;
-    type Rest = ();
-
-    fn numbers_of<T: Lane>(value: T) -> OfLight<T> {
-        [value; 23]
-    }
-
-    #[inline]
-    fn numbers(light: &Self::Light, xi: Xi) -> OfLight<f32> {
-        let unit = light.lobe().tight_bound();
-        of_light(&unit, light.position(), light.flux(), xi)
-    }
-
-    #[inline]
-    fn rest(_: &Self::Light) {}
-
-    #[inline]
-    fn may_reach(light: &Self::Light, xi: Xi) -> bool {
-        <GgxLobe<F, G> as Source>::may_reach(light, xi)
     }
 
     #[inline(always)]

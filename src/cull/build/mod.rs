@@ -10,6 +10,7 @@ mod place;
 mod source;
 mod spheres;
 mod spheroids;
+mod tight;
 mod vector;
 mod view;
 
@@ -18,8 +19,8 @@ use core::ops::Range;
 use fearless_simd::{Level, Simd, dispatch};
 use glam::Vec3;
 
-use self::ellipsoids::Tight;
 use self::source::{Frame, Lights, Source};
+use self::tight::Tight;
 use self::view::View;
 use super::LightBatch;
 use super::culler::{at_most, widest};

@@ -6,7 +6,7 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
 
 use super::place::Spheroids;
 use super::source::{Frame, OfShape, Place, Source, scale};
-use super::vector::{Vectors, Wide, dot, length_of_cross, round_up};
+use super::vector::{Vectors, Wide, cross, dot, length, round_up};
 use crate::bound::AXIS_TILT_RADIANS;
 use crate::cull::lanes::LANES;
 use crate::cull::shape::Lane;
@@ -68,7 +68,7 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
         let n = Vectors::<S>::new(n_x, n_y, n_z).widened();
         let w = Vectors::<S>::new(w_x, w_y, w_z).widened();
 
-        let sine = length_of_cross(n, w).narrowed();
+        let sine = length(cross(n, w)).narrowed();
         let smallest_cosine = cosine / ((sine + 1.0) * 2.0).sqrt();
         let most = max_fresnel::<S, F>(simd, fresnels, smallest_cosine);
         let lit = cosine.simd_gt(S::f32s::splat(simd, 0.0));
@@ -89,7 +89,11 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
 
 /// [`Fresnel::maximum`], one lane after the other.
 #[inline(always)]
-fn max_fresnel<S: Simd, F: Fresnel>(simd: S, fresnels: &[F], cosines: S::f32s) -> S::f32s {
+pub(super) fn max_fresnel<S: Simd, F: Fresnel>(
+    simd: S,
+    fresnels: &[F],
+    cosines: S::f32s,
+) -> S::f32s {
     let mut most = [0.0; LANES];
     let mut lanes = [0.0; LANES];
     cosines.store_slice(&mut lanes[..S::f32s::LEN]);
@@ -101,7 +105,7 @@ fn max_fresnel<S: Simd, F: Fresnel>(simd: S, fresnels: &[F], cosines: S::f32s) -
 
 /// [`GgxLobe::mirror_direction`].
 #[inline(always)]
-fn mirror_direction<S: Simd>(n: [Wide<S>; 3], w: [Wide<S>; 3]) -> Vectors<S> {
+pub(super) fn mirror_direction<S: Simd>(n: [Wide<S>; 3], w: [Wide<S>; 3]) -> Vectors<S> {
     let twice = dot(n, w) * 2.0 / dot(n, n);
     Vectors::new(
         (twice * n[0] - w[0]).narrowed(),
