@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::vector::round_up;
 use super::view::{Seen, View};
 use crate::cull::batch::Chunk;
-use crate::cull::lanes::{LANES, Lanes, load, parts, splat, store};
+use crate::cull::lanes::{LANES, Lanes, load_fours, parts, splat, store};
 use crate::cull::shape::{InLanes, Lane};
 use crate::{BatchShape, Roulette};
 
@@ -16,13 +16,13 @@ pub trait Source: Copy {
     /// What a light is given besides in a frame.
     type Given: Copy;
     type Shape: BatchShape;
-    /// The numbers of a light, each of type `T`.
-    type Numbers<T: Lane>: Lane + AsRef<[T]> + AsMut<[T]>;
+    /// The numbers of a light, four by four, each four of type `T`.
+    type Fours<T: Lane>: Lane + AsRef<[T]> + AsMut<[T]>;
     /// What a light has besides numbers.
     type Rest: Copy;
 
-    fn numbers_of<T: Lane>(value: T) -> Self::Numbers<T>;
-    fn numbers(light: &Self::Light, given: Self::Given) -> Self::Numbers<f32>;
+    fn fours_of<T: Lane>(value: T) -> Self::Fours<T>;
+    fn numbers(light: &Self::Light, given: Self::Given) -> Self::Fours<[f32; 4]>;
     fn rest(light: &Self::Light) -> Self::Rest;
 
     /// Whether a light may reach somewhere. That is but a guess, which spares the work on those that do
@@ -32,7 +32,7 @@ pub trait Source: Copy {
     /// The shapes of lights, and which of them are shapes of lights that reach somewhere.
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &Self::Numbers<S::f32s>,
+        numbers: &Self::Fours<[S::f32s; 4]>,
         rest: &[Self::Rest],
         frame: &Frame,
     ) -> (OfShape<S, Self::Shape>, S::mask32s);
@@ -51,7 +51,8 @@ pub struct Frame {
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 pub(super) struct Lights<T: Source> {
-    numbers: T::Numbers<Lanes>,
+    /// Light by light, since four numbers are copied at once.
+    numbers: T::Fours<Lanes<[f32; 4]>>,
     rest: [T::Rest; LANES],
     pub chunk: Chunk<T::Shape>,
     /// Those that have a shape, as bits, and the depths that these reach.
@@ -62,10 +63,10 @@ pub(super) struct Lights<T: Source> {
 impl<T: Source> Lights<T> {
     /// `light` in all lanes.
     pub fn splat(light: &T::Light, given: T::Given) -> Self {
-        let mut numbers = T::numbers_of([0.0; LANES]);
+        let mut numbers = T::fours_of([[0.0; 4]; LANES]);
         let of_light = T::numbers(light, given);
-        for (lanes, number) in numbers.as_mut().iter_mut().zip(of_light.as_ref()) {
-            *lanes = [*number; LANES];
+        for (lanes, four) in numbers.as_mut().iter_mut().zip(of_light.as_ref()) {
+            *lanes = [*four; LANES];
         }
         Self {
             numbers,
@@ -79,8 +80,8 @@ impl<T: Source> Lights<T> {
     #[inline]
     pub fn set(&mut self, lane: usize, name: u32, light: &T::Light, given: T::Given) {
         let numbers = self.numbers.as_mut().iter_mut();
-        for (lanes, number) in numbers.zip(T::numbers(light, given).as_ref()) {
-            lanes[lane] = *number;
+        for (lanes, four) in numbers.zip(T::numbers(light, given).as_ref()) {
+            lanes[lane] = *four;
         }
         self.rest[lane] = T::rest(light);
         self.chunk.numbers[lane] = name;
@@ -93,9 +94,9 @@ impl<T: Source> Lights<T> {
         let [mut nearest, mut farthest] = splat(simd, [f32::INFINITY, f32::NEG_INFINITY]);
         self.shaped = 0;
         for part in 0..parts::<S>() {
-            let mut numbers = T::numbers_of(zero);
-            for (vector, lanes) in numbers.as_mut().iter_mut().zip(self.numbers.as_ref()) {
-                *vector = load(simd, lanes, part);
+            let mut numbers = T::fours_of([zero; 4]);
+            for (vectors, lanes) in numbers.as_mut().iter_mut().zip(self.numbers.as_ref()) {
+                *vectors = load_fours(simd, lanes, part);
             }
             let first = part * S::f32s::LEN;
             let rest = &self.rest[first..][..S::f32s::LEN];
@@ -130,6 +131,12 @@ pub(super) fn scale<S: Simd>(simd: S, roulette: &Roulette, flux: S::f32s, xi: S:
         .max(f32::MIN_POSITIVE)
         .min(f32::MAX);
     flux.simd_gt(zero).select(normal, zero)
+}
+
+/// A vector and one number more.
+#[inline(always)]
+pub(super) fn four(v: Vec3, number: f32) -> [f32; 4] {
+    [v.x, v.y, v.z, number]
 }
 
 /// The position and the scale that a bound is placed with.

@@ -5,7 +5,7 @@ use core::f32::consts::FRAC_1_PI;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
 
 use super::place::Spheroids;
-use super::source::{Frame, OfShape, Place, Source, scale};
+use super::source::{Frame, OfShape, Place, Source, four, scale};
 use super::vector::{Vectors, Wide, cross, dot, length, round_up};
 use crate::bound::AXIS_TILT_RADIANS;
 use crate::cull::lanes::LANES;
@@ -16,33 +16,22 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
     type Light = Vpl<Self>;
     type Given = Xi;
     type Shape = Stretch;
-    /// The position, Φ, ξ, n, ω_i, μ, √(kμ² + α²) and α.
-    type Numbers<T: Lane> = [T; 14];
+    /// The position and Φ, n and μ, ω_i and √(kμ² + α²), α and ξ.
+    type Fours<T: Lane> = [T; 4];
     type Rest = F;
 
-    fn numbers_of<T: Lane>(value: T) -> [T; 14] {
-        [value; 14]
+    fn fours_of<T: Lane>(value: T) -> [T; 4] {
+        [value; 4]
     }
 
     #[inline]
-    fn numbers(light: &Self::Light, xi: Xi) -> [f32; 14] {
-        let (p, lobe) = (light.position(), light.lobe());
-        let (n, w) = (lobe.normal(), lobe.incoming());
+    fn numbers(light: &Self::Light, xi: Xi) -> [[f32; 4]; 4] {
+        let lobe = light.lobe();
         [
-            p.x,
-            p.y,
-            p.z,
-            light.flux(),
-            xi.get(),
-            n.x,
-            n.y,
-            n.z,
-            w.x,
-            w.y,
-            w.z,
-            lobe.incident_cosine(),
-            lobe.incident_root(),
-            lobe.ggx().roughness(),
+            four(light.position(), light.flux()),
+            four(*lobe.normal(), lobe.incident_cosine()),
+            four(*lobe.incoming(), lobe.incident_root()),
+            [lobe.ggx().roughness(), xi.get(), 0.0, 0.0],
         ]
     }
 
@@ -59,12 +48,16 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
     #[inline(always)]
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &[S::f32s; 14],
+        numbers: &[[S::f32s; 4]; 4],
         fresnels: &[F],
         frame: &Frame,
     ) -> (OfShape<S, Stretch>, S::mask32s) {
-        let [p_x, p_y, p_z, flux, xi, numbers @ ..] = *numbers;
-        let [n_x, n_y, n_z, w_x, w_y, w_z, cosine, root, alpha] = numbers;
+        let [[p_x, p_y, p_z, flux], numbers @ ..] = *numbers;
+        let [
+            [n_x, n_y, n_z, cosine],
+            [w_x, w_y, w_z, root],
+            [alpha, xi, ..],
+        ] = numbers;
         let n = Vectors::<S>::new(n_x, n_y, n_z).widened();
         let w = Vectors::<S>::new(w_x, w_y, w_z).widened();
 
@@ -126,20 +119,20 @@ impl Source for Spheroid {
     type Light = Self;
     type Given = Place;
     type Shape = Stretch;
-    /// The focus, the axis, r, α, the position and the scale.
-    type Numbers<T: Lane> = [T; 12];
+    /// The focus and r, the axis and α, the position and the scale.
+    type Fours<T: Lane> = [T; 3];
     type Rest = ();
 
-    fn numbers_of<T: Lane>(value: T) -> [T; 12] {
-        [value; 12]
+    fn fours_of<T: Lane>(value: T) -> [T; 3] {
+        [value; 3]
     }
 
     #[inline]
-    fn numbers(spheroid: &Self, (p, scale): Place) -> [f32; 12] {
-        let (f, u) = (spheroid.focus(), spheroid.axis());
-        let (radius, alpha) = (spheroid.radius(), spheroid.roughness());
+    fn numbers(spheroid: &Self, (p, scale): Place) -> [[f32; 4]; 3] {
         [
-            f.x, f.y, f.z, u.x, u.y, u.z, radius, alpha, p.x, p.y, p.z, scale,
+            four(spheroid.focus(), spheroid.radius()),
+            four(*spheroid.axis(), spheroid.roughness()),
+            four(p, scale),
         ]
     }
 
@@ -154,24 +147,12 @@ impl Source for Spheroid {
     #[inline(always)]
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &[S::f32s; 12],
+        numbers: &[[S::f32s; 4]; 3],
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, Stretch>, S::mask32s) {
-        let [
-            f_x,
-            f_y,
-            f_z,
-            u_x,
-            u_y,
-            u_z,
-            radius,
-            roughness,
-            p_x,
-            p_y,
-            p_z,
-            scale,
-        ] = *numbers;
+        let [[f_x, f_y, f_z, radius], numbers @ ..] = *numbers;
+        let [[u_x, u_y, u_z, roughness], [p_x, p_y, p_z, scale]] = numbers;
         let unit = Spheroids::<S> {
             focus: Vectors::new(f_x, f_y, f_z),
             axis: Vectors::new(u_x, u_y, u_z),

@@ -24,19 +24,18 @@ impl<F: Fresnel, G: MaskingShadowing> Source for Tight<F, G> {
     type Given = Xi;
     type Shape = Stretch;
     /// Those of the lobe, and of the majorant of F its value head-on and its rise.
-    type Numbers<T: Lane> = [T; 16];
+    type Fours<T: Lane> = [T; 4];
     type Rest = F;
 
-    fn numbers_of<T: Lane>(value: T) -> [T; 16] {
-        [value; 16]
+    fn fours_of<T: Lane>(value: T) -> [T; 4] {
+        [value; 4]
     }
 
     #[inline]
-    fn numbers(light: &Self::Light, xi: Xi) -> [f32; 16] {
+    fn numbers(light: &Self::Light, xi: Xi) -> [[f32; 4]; 4] {
         let FresnelMajorant { base, rise } = light.lobe().fresnel().majorant();
-        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n] =
-            <GgxLobe<F, G> as Source>::numbers(light, xi);
-        [a, b, c, d, e, f, g, h, i, j, k, l, m, n, base, rise]
+        let [a, b, c, [alpha, xi, ..]] = <GgxLobe<F, G> as Source>::numbers(light, xi);
+        [a, b, c, [alpha, xi, base, rise]]
     }
 
     #[inline]
@@ -52,13 +51,13 @@ impl<F: Fresnel, G: MaskingShadowing> Source for Tight<F, G> {
     #[inline(always)]
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &[S::f32s; 16],
+        numbers: &[[S::f32s; 4]; 4],
         fresnels: &[F],
         frame: &Frame,
     ) -> (OfShape<S, Stretch>, S::mask32s) {
-        let [p_x, p_y, p_z, flux, xi, numbers @ ..] = *numbers;
-        let [n_x, n_y, n_z, w_x, w_y, w_z, cosine, numbers @ ..] = numbers;
-        let [root, alpha, base, rise] = numbers;
+        let [[p_x, p_y, p_z, flux], numbers @ ..] = *numbers;
+        let [[n_x, n_y, n_z, cosine], [w_x, w_y, w_z, root], numbers] = numbers;
+        let [alpha, xi, base, rise] = numbers;
         let n = Vectors::<S>::new(n_x, n_y, n_z).widened();
         let w = Vectors::<S>::new(w_x, w_y, w_z).widened();
         let u = mirror_direction(n, w);
