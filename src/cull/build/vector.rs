@@ -48,11 +48,6 @@ impl<S: Simd> Vectors<S> {
     }
 
     #[inline(always)]
-    pub fn length(self) -> S::f32s {
-        self.dot(self).sqrt()
-    }
-
-    #[inline(always)]
     pub fn element_sum(self) -> S::f32s {
         self.x + self.y + self.z
     }
