@@ -177,7 +177,8 @@ impl Axes {
     /// The singular values of a triangular matrix: with T the trace of its square and h the difference of
     /// the eigenvalues of that, the longer is √((T + h)/2), and the shorter the determinant over it, which
     /// does not cancel. Its direction is along (D + h, 2m) or (2m, h − D), D and m being the difference on
-    /// the diagonal and the element off it, of which again the one that does not cancel is taken.
+    /// the diagonal and the element off it, of which again the one that does not cancel is taken. Half of
+    /// that, (l, m) with 2l = |D| + h, has the length √(lh), since h² = D² + 4m².
     #[inline]
     fn of_ellipse(along: f32, slant: f32, aside: f32) -> Self {
         let (first, mixed) = (along * along, along * slant);

@@ -19,10 +19,10 @@ pub(super) fn load<S: Simd>(simd: S, lanes: &Lanes, part: usize) -> S::f32s {
     S::f32s::from_slice(simd, &lanes[part * S::f32s::LEN..][..S::f32s::LEN])
 }
 
-/// The `part`-th vectors of each of four numbers that are held light by light.
+/// The vectors of each of four numbers that are held light by light, in as many `lanes`.
 #[inline(always)]
-pub(super) fn load_fours<S: Simd>(simd: S, lanes: &Lanes<[f32; 4]>, part: usize) -> [S::f32s; 4] {
-    let numbers = lanes[part * S::f32s::LEN..][..S::f32s::LEN].as_flattened();
+pub(super) fn load_fours<S: Simd>(simd: S, lanes: &[[f32; 4]]) -> [S::f32s; 4] {
+    let numbers = lanes.as_flattened();
     let [a, b, c, d] = [0, 1, 2, 3]
         .map(|i| S::f32s::from_slice(simd, &numbers[i * S::f32s::LEN..][..S::f32s::LEN]));
     let [(first_and_third, second_and_fourth), (third, fourth)] =

@@ -11,10 +11,10 @@ use crate::{
     AnisotropicGgxLobe, Bound, Bounded, Ellipsoid, Fresnel, MaskingShadowing, Stretch, Vpl, Xi,
 };
 
-/// The numbers of an ellipsoid in the order in which it holds them, which is how they are copied fastest,
-/// two others and a position: both parts of the centre, the columns of R and the semi-axes.
+/// Both parts of the centre, the columns of R and the semi-axes, in the order in which an ellipsoid holds
+/// them, which is how they are copied fastest; then Φ, and the position.
 #[inline]
-fn numbers(ellipsoid: &Ellipsoid, others: [f32; 2], position: Vec3) -> [[f32; 4]; 6] {
+fn numbers(ellipsoid: &Ellipsoid, flux: f32, position: Vec3) -> [[f32; 4]; 6] {
     let ([q, o], r) = (ellipsoid.center_parts(), ellipsoid.rotation());
     let ([u, v, w], s) = ([r.x_axis, r.y_axis, r.z_axis], ellipsoid.semi_axes());
     [
@@ -22,17 +22,17 @@ fn numbers(ellipsoid: &Ellipsoid, others: [f32; 2], position: Vec3) -> [[f32; 4]
         [o.y, o.z, u.x, u.y],
         [u.z, v.x, v.y, v.z],
         four(w, s.x),
-        [s.y, s.z, others[0], others[1]],
+        [s.y, s.z, flux, 0.0],
         four(position, 0.0),
     ]
 }
 
-/// The ellipsoids, the two others and the positions.
+/// The ellipsoids, Φ and the positions.
 #[inline(always)]
-fn ellipsoids<S: Simd>(numbers: &[[S::f32s; 4]; 6]) -> (Ellipsoids<S>, [S::f32s; 2], Vectors<S>) {
+fn ellipsoids<S: Simd>(numbers: &[[S::f32s; 4]; 6]) -> (Ellipsoids<S>, S::f32s, Vectors<S>) {
     let [[q_x, q_y, q_z, o_x], [o_y, o_z, u_x, u_y], numbers @ ..] = *numbers;
     let [[u_z, v_x, v_y, v_z], [w_x, w_y, w_z, s_x], numbers @ ..] = numbers;
-    let [[s_y, s_z, first, second], [p_x, p_y, p_z, _]] = numbers;
+    let [[s_y, s_z, flux, _], [p_x, p_y, p_z, _]] = numbers;
     let unit = Ellipsoids {
         parts: [Vectors::new(q_x, q_y, q_z), Vectors::new(o_x, o_y, o_z)],
         axes: [
@@ -42,7 +42,7 @@ fn ellipsoids<S: Simd>(numbers: &[[S::f32s; 4]; 6]) -> (Ellipsoids<S>, [S::f32s;
         ],
         semi_axes: Vectors::new(s_x, s_y, s_z),
     };
-    (unit, [first, second], Vectors::new(p_x, p_y, p_z))
+    (unit, flux, Vectors::new(p_x, p_y, p_z))
 }
 
 /// The stretches of ellipsoids around the origin, in place.
@@ -64,7 +64,7 @@ impl Source for Ellipsoid {
     type Light = Self;
     type Given = Place;
     type Shape = Stretch;
-    /// With the scale.
+    /// With no flux.
     type Fours<T: Lane> = [T; 6];
     type Rest = ();
 
@@ -73,12 +73,17 @@ impl Source for Ellipsoid {
     }
 
     #[inline]
-    fn numbers(ellipsoid: &Self, (position, scale): Place) -> [[f32; 4]; 6] {
-        numbers(ellipsoid, [scale, 0.0], position)
+    fn numbers(ellipsoid: &Self, (position, _): Place) -> [[f32; 4]; 6] {
+        numbers(ellipsoid, 0.0, position)
     }
 
     #[inline]
     fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn given((_, scale): Place) -> f32 {
+        scale
+    }
 
     #[inline]
     fn may_reach(light: &Self, (_, scale): Place) -> bool {
@@ -89,10 +94,11 @@ impl Source for Ellipsoid {
     fn shapes<S: Simd>(
         simd: S,
         numbers: &[[S::f32s; 4]; 6],
+        scale: S::f32s,
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, Stretch>, S::mask32s) {
-        let (unit, [scale, _], position) = ellipsoids(numbers);
+        let (unit, _, position) = ellipsoids(numbers);
         placed_ellipsoids(simd, unit, position, scale, frame)
     }
 }
@@ -101,7 +107,6 @@ impl<F: Fresnel, G: MaskingShadowing> Source for AnisotropicGgxLobe<F, G> {
     type Light = Vpl<Self>;
     type Given = Xi;
     type Shape = Stretch;
-    /// With Φ and ξ.
     type Fours<T: Lane> = [T; 6];
     type Rest = ();
 
@@ -110,13 +115,18 @@ impl<F: Fresnel, G: MaskingShadowing> Source for AnisotropicGgxLobe<F, G> {
     }
 
     #[inline]
-    fn numbers(light: &Self::Light, xi: Xi) -> [[f32; 4]; 6] {
+    fn numbers(light: &Self::Light, _: Xi) -> [[f32; 4]; 6] {
         let unit = light.lobe().unit_bound();
-        numbers(&unit, [light.flux(), xi.get()], light.position())
+        numbers(&unit, light.flux(), light.position())
     }
 
     #[inline]
     fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn given(xi: Xi) -> f32 {
+        xi.get()
+    }
 
     #[inline]
     fn may_reach(light: &Self::Light, _: Xi) -> bool {
@@ -127,10 +137,11 @@ impl<F: Fresnel, G: MaskingShadowing> Source for AnisotropicGgxLobe<F, G> {
     fn shapes<S: Simd>(
         simd: S,
         numbers: &[[S::f32s; 4]; 6],
+        xi: S::f32s,
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, Stretch>, S::mask32s) {
-        let (unit, [flux, xi], position) = ellipsoids(numbers);
+        let (unit, flux, position) = ellipsoids(numbers);
         let scale = scale(simd, &frame.roulette, flux, xi);
         placed_ellipsoids(simd, unit, position, scale, frame)
     }

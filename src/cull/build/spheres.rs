@@ -12,26 +12,30 @@ impl Source for LambertLobe {
     type Light = Vpl<Self>;
     type Given = Xi;
     type Shape = CameraSphere;
-    /// The position and Φ, n and √ρ, and ξ.
-    type Fours<T: Lane> = [T; 3];
+    /// The position and Φ, n and √ρ.
+    type Fours<T: Lane> = [T; 2];
     type Rest = ();
 
-    fn fours_of<T: Lane>(value: T) -> [T; 3] {
-        [value; 3]
+    fn fours_of<T: Lane>(value: T) -> [T; 2] {
+        [value; 2]
     }
 
     #[inline]
-    fn numbers(light: &Self::Light, xi: Xi) -> [[f32; 4]; 3] {
+    fn numbers(light: &Self::Light, _: Xi) -> [[f32; 4]; 2] {
         let lobe = light.lobe();
         [
             four(light.position(), light.flux()),
             four(*lobe.normal(), lobe.albedo_root()),
-            [xi.get(), 0.0, 0.0, 0.0],
         ]
     }
 
     #[inline]
     fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn given(xi: Xi) -> f32 {
+        xi.get()
+    }
 
     #[inline]
     fn may_reach(light: &Self::Light, _: Xi) -> bool {
@@ -41,11 +45,12 @@ impl Source for LambertLobe {
     #[inline(always)]
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &[[S::f32s; 4]; 3],
+        numbers: &[[S::f32s; 4]; 2],
+        xi: S::f32s,
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, CameraSphere>, S::mask32s) {
-        let [[p_x, p_y, p_z, flux], [n_x, n_y, n_z, root], [xi, ..]] = *numbers;
+        let [[p_x, p_y, p_z, flux], [n_x, n_y, n_z, root]] = *numbers;
         let reach = root * Self::ROOT_OF_ONE_OVER_PI;
         let unit = Spheres {
             center: Vectors::<S>::new(n_x, n_y, n_z) * (reach * Self::CENTER),
@@ -60,24 +65,26 @@ impl Source for ConstantLobe {
     type Light = Vpl<Self>;
     type Given = Xi;
     type Shape = CameraSphere;
-    /// The position and Φ, and ξ.
-    type Fours<T: Lane> = [T; 2];
+    /// The position and Φ.
+    type Fours<T: Lane> = [T; 1];
     type Rest = ();
 
-    fn fours_of<T: Lane>(value: T) -> [T; 2] {
-        [value; 2]
+    fn fours_of<T: Lane>(value: T) -> [T; 1] {
+        [value; 1]
     }
 
     #[inline]
-    fn numbers(light: &Self::Light, xi: Xi) -> [[f32; 4]; 2] {
-        [
-            four(light.position(), light.flux()),
-            [xi.get(), 0.0, 0.0, 0.0],
-        ]
+    fn numbers(light: &Self::Light, _: Xi) -> [[f32; 4]; 1] {
+        [four(light.position(), light.flux())]
     }
 
     #[inline]
     fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn given(xi: Xi) -> f32 {
+        xi.get()
+    }
 
     #[inline]
     fn may_reach(light: &Self::Light, _: Xi) -> bool {
@@ -87,11 +94,12 @@ impl Source for ConstantLobe {
     #[inline(always)]
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &[[S::f32s; 4]; 2],
+        numbers: &[[S::f32s; 4]; 1],
+        xi: S::f32s,
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, CameraSphere>, S::mask32s) {
-        let [[p_x, p_y, p_z, flux], [xi, ..]] = *numbers;
+        let [[p_x, p_y, p_z, flux]] = *numbers;
         let bound = Self.unit_bound();
         let zero = S::f32s::splat(simd, 0.0);
         let unit = Spheres {
@@ -107,7 +115,7 @@ impl Source for Sphere {
     type Light = Self;
     type Given = Place;
     type Shape = CameraSphere;
-    /// The centre and the radius, the position and the scale.
+    /// The centre and the radius, and the position.
     type Fours<T: Lane> = [T; 2];
     type Rest = ();
 
@@ -116,12 +124,17 @@ impl Source for Sphere {
     }
 
     #[inline]
-    fn numbers(sphere: &Self, (p, scale): Place) -> [[f32; 4]; 2] {
-        [four(sphere.center(), sphere.radius()), four(p, scale)]
+    fn numbers(sphere: &Self, (p, _): Place) -> [[f32; 4]; 2] {
+        [four(sphere.center(), sphere.radius()), four(p, 0.0)]
     }
 
     #[inline]
     fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn given((_, scale): Place) -> f32 {
+        scale
+    }
 
     #[inline]
     fn may_reach(light: &Self, (_, scale): Place) -> bool {
@@ -132,10 +145,11 @@ impl Source for Sphere {
     fn shapes<S: Simd>(
         simd: S,
         numbers: &[[S::f32s; 4]; 2],
+        scale: S::f32s,
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, CameraSphere>, S::mask32s) {
-        let [[x, y, z, radius], [p_x, p_y, p_z, scale]] = *numbers;
+        let [[x, y, z, radius], [p_x, p_y, p_z, _]] = *numbers;
         let center = Vectors::new(x, y, z);
         let unit = Spheres { center, radius };
         placed_spheres(simd, unit, Vectors::new(p_x, p_y, p_z), scale, frame)

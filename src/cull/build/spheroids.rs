@@ -16,7 +16,7 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
     type Light = Vpl<Self>;
     type Given = Xi;
     type Shape = Stretch;
-    /// The position and Φ, n and μ, ω_i and √(kμ² + α²), α and ξ.
+    /// The position and Φ, n and μ, ω_i and √(kμ² + α²), and α.
     type Fours<T: Lane> = [T; 4];
     type Rest = F;
 
@@ -25,19 +25,24 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
     }
 
     #[inline]
-    fn numbers(light: &Self::Light, xi: Xi) -> [[f32; 4]; 4] {
+    fn numbers(light: &Self::Light, _: Xi) -> [[f32; 4]; 4] {
         let lobe = light.lobe();
         [
             four(light.position(), light.flux()),
             four(*lobe.normal(), lobe.incident_cosine()),
             four(*lobe.incoming(), lobe.incident_root()),
-            [lobe.ggx().roughness(), xi.get(), 0.0, 0.0],
+            [lobe.ggx().roughness(), 0.0, 0.0, 0.0],
         ]
     }
 
     #[inline]
     fn rest(light: &Self::Light) -> F {
         *light.lobe().fresnel()
+    }
+
+    #[inline]
+    fn given(xi: Xi) -> f32 {
+        xi.get()
     }
 
     #[inline]
@@ -49,15 +54,12 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
     fn shapes<S: Simd>(
         simd: S,
         numbers: &[[S::f32s; 4]; 4],
+        xi: S::f32s,
         fresnels: &[F],
         frame: &Frame,
     ) -> (OfShape<S, Stretch>, S::mask32s) {
         let [[p_x, p_y, p_z, flux], numbers @ ..] = *numbers;
-        let [
-            [n_x, n_y, n_z, cosine],
-            [w_x, w_y, w_z, root],
-            [alpha, xi, ..],
-        ] = numbers;
+        let [[n_x, n_y, n_z, cosine], [w_x, w_y, w_z, root], [alpha, ..]] = numbers;
         let n = Vectors::<S>::new(n_x, n_y, n_z).widened();
         let w = Vectors::<S>::new(w_x, w_y, w_z).widened();
 
@@ -119,7 +121,7 @@ impl Source for Spheroid {
     type Light = Self;
     type Given = Place;
     type Shape = Stretch;
-    /// The focus and r, the axis and α, the position and the scale.
+    /// The focus and r, the axis and α, and the position.
     type Fours<T: Lane> = [T; 3];
     type Rest = ();
 
@@ -128,16 +130,21 @@ impl Source for Spheroid {
     }
 
     #[inline]
-    fn numbers(spheroid: &Self, (p, scale): Place) -> [[f32; 4]; 3] {
+    fn numbers(spheroid: &Self, (p, _): Place) -> [[f32; 4]; 3] {
         [
             four(spheroid.focus(), spheroid.radius()),
             four(*spheroid.axis(), spheroid.roughness()),
-            four(p, scale),
+            four(p, 0.0),
         ]
     }
 
     #[inline]
     fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn given((_, scale): Place) -> f32 {
+        scale
+    }
 
     #[inline]
     fn may_reach(light: &Self, (_, scale): Place) -> bool {
@@ -148,11 +155,12 @@ impl Source for Spheroid {
     fn shapes<S: Simd>(
         simd: S,
         numbers: &[[S::f32s; 4]; 3],
+        scale: S::f32s,
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, Stretch>, S::mask32s) {
         let [[f_x, f_y, f_z, radius], numbers @ ..] = *numbers;
-        let [[u_x, u_y, u_z, roughness], [p_x, p_y, p_z, scale]] = numbers;
+        let [[u_x, u_y, u_z, roughness], [p_x, p_y, p_z, _]] = numbers;
         let unit = Spheroids::<S> {
             focus: Vectors::new(f_x, f_y, f_z),
             axis: Vectors::new(u_x, u_y, u_z),

@@ -23,7 +23,7 @@ impl<F: Fresnel, G: MaskingShadowing> Source for Tight<F, G> {
     type Light = Vpl<GgxLobe<F, G>>;
     type Given = Xi;
     type Shape = Stretch;
-    /// Those of the lobe, and of the majorant of F its value head-on and its rise.
+    /// Those of the lobe, and after α the majorant of F: its value head-on, and its rise.
     type Fours<T: Lane> = [T; 4];
     type Rest = F;
 
@@ -34,13 +34,18 @@ impl<F: Fresnel, G: MaskingShadowing> Source for Tight<F, G> {
     #[inline]
     fn numbers(light: &Self::Light, xi: Xi) -> [[f32; 4]; 4] {
         let FresnelMajorant { base, rise } = light.lobe().fresnel().majorant();
-        let [a, b, c, [alpha, xi, ..]] = <GgxLobe<F, G> as Source>::numbers(light, xi);
-        [a, b, c, [alpha, xi, base, rise]]
+        let [a, b, c, [alpha, ..]] = <GgxLobe<F, G> as Source>::numbers(light, xi);
+        [a, b, c, [alpha, base, rise, 0.0]]
     }
 
     #[inline]
     fn rest(light: &Self::Light) -> F {
         *light.lobe().fresnel()
+    }
+
+    #[inline]
+    fn given(xi: Xi) -> f32 {
+        xi.get()
     }
 
     #[inline]
@@ -52,12 +57,13 @@ impl<F: Fresnel, G: MaskingShadowing> Source for Tight<F, G> {
     fn shapes<S: Simd>(
         simd: S,
         numbers: &[[S::f32s; 4]; 4],
+        xi: S::f32s,
         fresnels: &[F],
         frame: &Frame,
     ) -> (OfShape<S, Stretch>, S::mask32s) {
         let [[p_x, p_y, p_z, flux], numbers @ ..] = *numbers;
         let [[n_x, n_y, n_z, cosine], [w_x, w_y, w_z, root], numbers] = numbers;
-        let [alpha, xi, base, rise] = numbers;
+        let [alpha, base, rise, _] = numbers;
         let n = Vectors::<S>::new(n_x, n_y, n_z).widened();
         let w = Vectors::<S>::new(w_x, w_y, w_z).widened();
         let u = mirror_direction(n, w);
