@@ -39,7 +39,8 @@ impl Source for LambertLobe {
 
     #[inline]
     fn may_reach(light: &Self::Light, _: Xi) -> bool {
-        light.flux() > 0.0 && light.lobe().albedo() > 0.0
+        // That a surface reflects nothing is too rare to ask each time.
+        light.flux() > 0.0
     }
 
     #[inline(always)]
