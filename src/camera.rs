@@ -194,16 +194,17 @@ impl Camera {
     /// `point` of world space in camera space, rounded once: where world and camera are far from the
     /// origin, nothing of a near point is lost.
     pub fn to_camera_space(&self, point: Vec3) -> Vec3 {
-        self.sum_to_camera_space([point, Vec3::ZERO])
+        self.turned_and_moved(|row| math::dot(row, point))
     }
 
     /// The exact sum of `parts` in camera space, rounded once.
     pub(crate) fn sum_to_camera_space(&self, parts: [Vec3; 2]) -> Vec3 {
-        let coordinate = |i| {
-            let row = self.rotation.row(i);
-            let turned = math::dot(row, parts[0]) + math::dot(row, parts[1]);
-            (turned + f64::from(self.translation[i])) as f32
-        };
+        self.turned_and_moved(|row| math::dot(row, parts[0]) + math::dot(row, parts[1]))
+    }
+
+    /// What `turned` makes of each row of the rotation, moved.
+    fn turned_and_moved(&self, turned: impl Fn(Vec3) -> f64) -> Vec3 {
+        let coordinate = |i| (turned(self.rotation.row(i)) + f64::from(self.translation[i])) as f32;
         Vec3::new(coordinate(0), coordinate(1), coordinate(2))
     }
 

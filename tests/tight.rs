@@ -228,6 +228,14 @@ proptest! {
         prop_assume!(said.max_reflected > 1e-15);
         prop_assert!(volume(&said.tight) <= 1.001 * said.spheroid_volume);
         prop_assert!(volume(&said.triaxial) <= 1.001 * said.spheroid_volume);
+        // The tight one's axes are orthonormal, so that its semi-axes mean what they say: to eleven roundings
+        // of a length, and to as many of a right angle.
+        let rotation = said.tight.rotation();
+        let axes = [rotation.x_axis, rotation.y_axis, rotation.z_axis].map(Vector::from);
+        for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)] {
+            let off = axes[i].dot(axes[j]) - f64::from(u8::from(i == j));
+            prop_assert!(off.abs() <= 22.0 * f64::from(f32::EPSILON) / 2.0, "{i} {j}: {off}");
+        }
 
         // The surface l = r√(πD) with r² = (F G2/G1)_max G1/(4πμ), everywhere.
         let (alpha, mu) = (f64::from(roughness), lit.surface.incident_cosine());

@@ -61,5 +61,5 @@ impl Vpl<LambertLobe> {
 /// R = √(ρ/π), with the roots apart, since the product with a subnormal albedo would be off by more than
 /// its root is.
 fn unit_reach(lobe: &LambertLobe) -> f32 {
-    math::sqrt(lobe.albedo()) * LambertLobe::ROOT_OF_ONE_OVER_PI
+    lobe.albedo_root() * LambertLobe::ROOT_OF_ONE_OVER_PI
 }

@@ -17,7 +17,7 @@ mod smallest;
 mod sphere;
 mod spheroid;
 mod support;
-mod table;
+pub(crate) mod table;
 mod triaxial;
 
 pub use ellipsoid::Ellipsoid;

@@ -57,7 +57,7 @@
 //!
 //! Where the paper's spheroid is smaller, near normal incidence, it is taken instead.
 
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec3, Vec3A, Vec3Swizzles};
 
 use super::{Bound, Ellipsoid, table};
 use crate::{Fresnel, FresnelMajorant, GgxLobe, MaskingShadowing, Roulette, Vpl, Xi, math};
@@ -73,25 +73,34 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
         if self.incident_cosine() <= 0.0 {
             return Ellipsoid::EMPTY;
         }
-        let alpha = self.ggx().roughness();
         let ([u, w], sine) = self.mirror_and_across();
         let shape = Shape::of(self, sine);
         let radius = math::sqrt(
             shape.reflected * self.masking_over_four_cosines() * core::f32::consts::FRAC_1_PI,
         );
-
-        // Of the ellipse in the plane of incidence, conjugate semi-diameters over r.
-        let over_alpha = 1.0 / alpha;
-        let ([long, short], [cosine, sine]) =
-            axes_of_ellipse(shape.along * over_alpha, shape.slant, shape.aside);
+        let Axes {
+            long,
+            short,
+            cosine,
+            sine,
+        } = shape.axes;
         // Down to the surface, where the lobe leans to.
-        let down = u.cross(w);
-        let rotation = Mat3::from_cols(u * cosine + down * sine, down * cosine - u * sine, -w);
+        let [u, across] = [Vec3A::from(u), Vec3A::from(w)];
+        // Spelled out, since glam's product is fused where the target has that.
+        let down = (u.zxy() * across - u * across.zxy()).zxy();
+        let rotation = Mat3::from_cols(
+            Vec3::from(u * cosine + down * sine),
+            Vec3::from(down * cosine - u * sine),
+            -w,
+        );
         let semi_axes = Vec3::new(long, short, shape.across);
-        let (least, most) = (semi_axes.min_element(), semi_axes.max_element());
+        let (least, most) = (
+            math::lesser(short, shape.across),
+            math::greater(long, shape.across),
+        );
         let tilt = 12.0 * math::UNIT_ROUNDOFF * (most / least);
         let semi_axes = semi_axes * (radius * math::round_up(1.0 + tilt, 96));
-        let center = (u * (shape.center[0] * over_alpha) + down * shape.center[1]) * radius;
+        let center = Vec3::from((u * shape.center[0] + down * shape.center[1]) * radius);
         Ellipsoid::from_parts(Vec3::ZERO, center, rotation, semi_axes)
     }
 }
@@ -105,15 +114,23 @@ impl<F: Fresnel, G: MaskingShadowing> Vpl<GgxLobe<F, G>> {
     }
 }
 
-/// An ellipsoid in units of (r/α, r, r), r² = `reflected`·G1/(4πμ), along (ω_u, −ω_v, ω_w).
+/// An ellipsoid in units of r, r² = `reflected`·G1/(4πμ).
 #[derive(Clone, Copy)]
 struct Shape {
     reflected: f32,
+    /// Along (ω_u, −ω_v).
     center: [f32; 2],
-    along: f32,
-    slant: f32,
-    aside: f32,
+    axes: Axes,
     across: f32,
+}
+
+/// Of an ellipse: the semi-axes, and the cosine and sine of the angle that the first of them is at.
+#[derive(Clone, Copy)]
+struct Axes {
+    long: f32,
+    short: f32,
+    cosine: f32,
+    sine: f32,
 }
 
 impl Shape {
@@ -127,14 +144,13 @@ impl Shape {
         let FresnelMajorant { base, rise } = lobe.fresnel().majorant();
         let (base, reflectance) = if rise > 0.0 {
             // Below the table's least F0 the majorant is raised to it.
-            const LEAST_SHARE: f32 = table::LEAST_F0 / (1.0 - table::LEAST_F0);
-            let base = base.max(math::round_up(rise * LEAST_SHARE, 2));
+            let base = math::greater(base, math::round_up(rise * table::LEAST_SHARE, 2));
             let share = base / (base + rise);
             (base, Some(math::sqrt(math::sqrt(share))))
         } else {
             (base, None)
         };
-        let [c1, c2, a11, a21, a22, a33] =
+        let [first, second] =
             table::ellipsoid(math::sqrt(alpha), half_incidence + half_delta, reflectance);
         // The majorant's 1 − μ is off by μ's eight roundings, against at least LEAST_F0.
         let reflected = math::round_up(
@@ -144,55 +160,62 @@ impl Shape {
 
         let most = lobe.max_fresnel_at(sine);
         let over_spheroid = reflected / most;
-        let volume = a11 * a22 * a33 * root;
+        let over_alpha = 1.0 / alpha;
+        let across = second.y * root;
+        let volume = first.z * second.x * across;
         let along_of_spheroid = 0.5 + 0.5 * alpha * alpha;
         let is_smaller = volume * volume * (over_spheroid * over_spheroid * over_spheroid)
             <= along_of_spheroid * along_of_spheroid;
-        let both = [
-            Self {
-                reflected: most,
-                center: [0.5 * (1.0 - alpha) * (1.0 + alpha), 0.0],
-                along: along_of_spheroid,
-                slant: 0.0,
-                aside: 1.0,
-                across: 1.0,
-            },
+        if is_smaller {
             Self {
                 reflected,
-                center: [c1, c2],
-                along: a11,
-                slant: a21,
-                aside: a22,
-                across: a33 * root,
-            },
-        ];
-        // By an index, without a branch that nothing could foretell.
-        both[usize::from(is_smaller)]
+                center: [first.x * over_alpha, first.y],
+                axes: Axes::of_ellipse(first.z * over_alpha, first.w, second.x),
+                across,
+            }
+        } else {
+            Self {
+                reflected: most,
+                center: [0.5 * (1.0 - alpha) * (1.0 + alpha) * over_alpha, 0.0],
+                axes: Axes {
+                    long: along_of_spheroid * over_alpha,
+                    short: 1.0,
+                    cosine: 1.0,
+                    sine: 0.0,
+                },
+                across: 1.0,
+            }
+        }
     }
 }
 
-/// Semi-axes of the ellipse with conjugate semi-diameters (`along`, `slant`) and (0, `aside`), and the
-/// cosine and sine of the angle that the first of them is at.
-///
-/// The singular values of a triangular matrix: with T the trace of its square and h the difference of
-/// the eigenvalues of that, the longer is √((T + h)/2), and the shorter the determinant over it, which
-/// does not cancel. Its direction is along (D + h, 2m) or (2m, h − D), D and m being the difference on
-/// the diagonal and the element off it, of which again the one that does not cancel is taken.
-#[inline]
-fn axes_of_ellipse(along: f32, slant: f32, aside: f32) -> ([f32; 2], [f32; 2]) {
-    let (first, mixed) = (along * along, along * slant);
-    let second = slant * slant + aside * aside;
-    let difference = first - second;
-    let h = math::sqrt(difference * difference + 4.0 * mixed * mixed);
-    let long = math::sqrt(0.5 * (first + second + h));
-    let short = along * aside / long;
-    // Of a circle any axes will do.
-    let h = h.max(1e-15);
-    let larger = 0.5 * (difference.abs() + h);
-    let over = 1.0 / math::sqrt(larger * larger + mixed * mixed);
-    let (larger, smaller) = (larger * over, mixed * over);
-    let is_along = difference >= 0.0;
-    let cosine = if is_along { larger } else { smaller };
-    let sine = if is_along { smaller } else { larger };
-    ([long, short], [cosine, sine])
+impl Axes {
+    /// Of the ellipse with conjugate semi-diameters (`along`, `slant`) and (0, `aside`).
+    ///
+    /// The singular values of a triangular matrix: with T the trace of its square and h the difference of
+    /// the eigenvalues of that, the longer is √((T + h)/2), and the shorter the determinant over it, which
+    /// does not cancel. Its direction is along (D + h, 2m) or (2m, h − D), D and m being the difference on
+    /// the diagonal and the element off it, of which again the one that does not cancel is taken. Half of
+    /// that, (l, m) with 2l = |D| + h, has the length √(lh), since h² = D² + 4m².
+    #[inline]
+    fn of_ellipse(along: f32, slant: f32, aside: f32) -> Self {
+        let (first, mixed) = (along * along, along * slant);
+        let second = slant * slant + aside * aside;
+        let difference = first - second;
+        // Of a circle any axes will do.
+        let apart = difference.abs().max(1e-15);
+        let h = math::sqrt(apart * apart + 4.0 * mixed * mixed);
+        let long = math::sqrt(0.5 * (first + second + h));
+        let short = along * aside / long;
+        let larger = 0.5 * (apart + h);
+        let over = 1.0 / math::sqrt(larger * h);
+        let (larger, smaller) = (larger * over, mixed * over);
+        let is_along = difference >= 0.0;
+        Self {
+            long,
+            short,
+            cosine: if is_along { larger } else { smaller },
+            sine: if is_along { smaller } else { larger },
+        }
+    }
 }

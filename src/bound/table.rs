@@ -12,6 +12,8 @@ pub(crate) const INCIDENCES: usize = 21;
 pub(crate) const REFLECTANCES: usize = 7;
 /// What F0 over the F of grazing light is at least taken to be.
 pub(crate) const LEAST_F0: f32 = 1.0 / 256.0;
+/// [`LEAST_F0`] over what F rises by from there.
+pub(crate) const LEAST_SHARE: f32 = LEAST_F0 / (1.0 - LEAST_F0);
 /// ∜[`LEAST_F0`].
 pub(crate) const LEAST_ROOT: f32 = 0.25;
 
@@ -40,12 +42,48 @@ static TABLE: [[f32; STRIDE]; KNOTS] = {
     table
 };
 
-/// The knot before `x`, which counts knots, and how far `x` is from there to the next.
+/// A coordinate of the table, counted in knots: `scale` times what is left of it after `first`.
+#[derive(Clone, Copy)]
+pub(crate) struct Axis {
+    pub first: f32,
+    pub scale: f32,
+    /// The last knot that has a next one.
+    pub last: f32,
+}
+
+impl Axis {
+    /// √α
+    pub const ROUGHNESS: Self = Self::new(0.0, 1.0, ROUGHNESSES);
+    /// tan(θ_i/2) + tan(δ/2)
+    pub const INCIDENCE: Self = Self::new(0.0, 2.0, INCIDENCES);
+    /// ∜F0
+    pub const REFLECTANCE: Self = Self::new(LEAST_ROOT, 1.0, REFLECTANCES);
+
+    const fn new(first: f32, last: f32, knots: usize) -> Self {
+        Self {
+            first,
+            scale: (knots - 1) as f32 / (last - first),
+            last: (knots - 2) as f32,
+        }
+    }
+
+    /// A knot that `x` is at or past, and how far `x` is from there to the next.
+    #[inline]
+    fn split(self, x: f32) -> (usize, f32) {
+        let x = (x - self.first) * self.scale;
+        let whole = (x - 0.5).max(0.0).min(self.last) + WHOLE;
+        (low_bits(whole, self.last as usize), x - (whole - WHOLE))
+    }
+}
+
+/// 1.5·2²³, next to which there are but whole numbers: a sum with it is rounded to one, which its lowest
+/// bits hold. That takes less than a conversion.
+pub(crate) const WHOLE: f32 = 12_582_912.0;
+
+/// What [`WHOLE`] was added to, but `last` at most: so that no index is out of bounds.
 #[inline]
-fn split(x: f32, knots: u16) -> (usize, f32) {
-    // The conversion saturates, and takes NaN to zero.
-    let knot = (x as i32).clamp(0, i32::from(knots) - 2);
-    (knot as usize, x - knot as f32)
+fn low_bits(whole: f32, last: usize) -> usize {
+    usize::from(whole.to_bits() as u16).min(last)
 }
 
 /// The ellipsoid at a knot, which the certificate is of.
@@ -75,39 +113,42 @@ impl Knot {
 }
 
 /// The ellipsoid at √α = `roughness`, tan(θ_i/2) + tan(δ/2) = `incidence`, and ∜F0 = `reflectance`,
-/// or at F0 = 1 without one.
+/// or at F0 = 1 without one, as [`between`] has it.
 #[inline]
-pub(crate) fn ellipsoid(
-    roughness: f32,
-    incidence: f32,
-    reflectance: Option<f32>,
-) -> [f32; NUMBERS] {
-    let (i, u) = split(roughness * (ROUGHNESSES - 1) as f32, ROUGHNESSES as u16);
-    let (j, v) = split(
-        incidence * (0.5 * (INCIDENCES - 1) as f32),
-        INCIDENCES as u16,
-    );
-    let row = (i * INCIDENCES + j) * REFLECTANCES;
-    let next = row + INCIDENCES * REFLECTANCES;
-    let [a, b, c, d] = if let Some(reflectance) = reflectance {
-        const SCALE: f32 = (REFLECTANCES - 1) as f32 / (1.0 - LEAST_ROOT);
-        let (k, w) = split((reflectance - LEAST_ROOT) * SCALE, REFLECTANCES as u16);
-        let at = |row: usize| Knot::at(row + k).towards(Knot::at(row + k + 1), w);
-        [
-            at(row),
-            at(row + REFLECTANCES),
-            at(next),
-            at(next + REFLECTANCES),
-        ]
+pub(crate) fn ellipsoid(roughness: f32, incidence: f32, reflectance: Option<f32>) -> [Vec4; 2] {
+    let (i, u) = Axis::ROUGHNESS.split(roughness);
+    let (j, v) = Axis::INCIDENCE.split(incidence);
+    let first = (i * INCIDENCES + j) * REFLECTANCES;
+    if let Some(reflectance) = reflectance {
+        let (k, w) = Axis::REFLECTANCE.split(reflectance);
+        between(first + k, [u, v], Some(w))
     } else {
-        let at = |row: usize| Knot::at(row + REFLECTANCES - 1);
-        [
-            at(row),
-            at(row + REFLECTANCES),
-            at(next),
-            at(next + REFLECTANCES),
-        ]
+        between(first + REFLECTANCES - 1, [u, v], None)
+    }
+}
+
+const TOWARDS_INCIDENCE: usize = REFLECTANCES;
+const TOWARDS_ROUGHNESS: usize = INCIDENCES * REFLECTANCES;
+
+/// The number of the knot (i, j, k) in the table, from a sum with [`WHOLE`].
+#[cfg(feature = "cull")]
+#[inline]
+pub(crate) fn first_knot(number: f32) -> usize {
+    low_bits(number, KNOTS - 1 - TOWARDS_ROUGHNESS - TOWARDS_INCIDENCE)
+}
+
+/// What is found from the `first` knot towards the next ones, by these shares of the way along
+/// √α, tan(θ_i/2) + tan(δ/2), and ∜F0 if that is not at its last knot: (c₁, c₂, A₁₁, A₂₁) and
+/// (A₂₂, A₃₃, 0, 0).
+#[inline]
+pub(crate) fn between(first: usize, [u, v]: [f32; 2], w: Option<f32>) -> [Vec4; 2] {
+    let at = |i: usize| match w {
+        Some(w) => Knot::at(i).towards(Knot::at(i + 1), w),
+        None => Knot::at(i),
     };
+    let [a, b] = [at(first), at(first + TOWARDS_INCIDENCE)];
+    let next = first + TOWARDS_ROUGHNESS;
+    let [c, d] = [at(next), at(next + TOWARDS_INCIDENCE)];
     let Knot(first, second) = a.towards(b, v).towards(c.towards(d, v), u);
-    [first.x, first.y, first.z, first.w, second.x, second.y]
+    [first, second]
 }

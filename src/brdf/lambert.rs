@@ -3,7 +3,7 @@ use core::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 
 use super::Lobe;
-use crate::{Direction, Error, error};
+use crate::{Direction, Error, error, math};
 
 /// Lambert's lobe: the same radiance in every direction, f = ρ/π.
 ///
@@ -20,6 +20,9 @@ use crate::{Direction, Error, error};
 #[cfg_attr(feature = "serde", serde(try_from = "crate::unchecked::LambertLobe"))]
 pub struct LambertLobe {
     albedo: f32,
+    /// √ρ, which every bound starts from.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    albedo_root: f32,
     normal: Direction,
 }
 
@@ -30,13 +33,21 @@ impl LambertLobe {
     ///
     /// [`Error::Number`] if `albedo` is outside \[0, 1\] or NaN.
     pub fn new(albedo: f32, normal: Direction) -> Result<Self, Error> {
-        error::number_in("albedo", albedo, "in [0, 1]", 0.0..=1.0)
-            .map(|albedo| Self { albedo, normal })
+        error::number_in("albedo", albedo, "in [0, 1]", 0.0..=1.0).map(|albedo| Self {
+            albedo,
+            albedo_root: math::sqrt(albedo),
+            normal,
+        })
     }
 
     /// The share of light reflected, ρ.
     pub fn albedo(&self) -> f32 {
         self.albedo
+    }
+
+    /// √ρ
+    pub(crate) fn albedo_root(&self) -> f32 {
+        self.albedo_root
     }
 
     /// The surface normal n.

@@ -19,6 +19,19 @@ pub(super) fn load<S: Simd>(simd: S, lanes: &Lanes, part: usize) -> S::f32s {
     S::f32s::from_slice(simd, &lanes[part * S::f32s::LEN..][..S::f32s::LEN])
 }
 
+/// The vectors of each of four numbers that are held light by light, in as many `lanes`.
+#[inline(always)]
+pub(super) fn load_fours<S: Simd>(simd: S, lanes: &[[f32; 4]]) -> [S::f32s; 4] {
+    let numbers = lanes.as_flattened();
+    let [a, b, c, d] = [0, 1, 2, 3]
+        .map(|i| S::f32s::from_slice(simd, &numbers[i * S::f32s::LEN..][..S::f32s::LEN]));
+    let [(first_and_third, second_and_fourth), (third, fourth)] =
+        [a.deinterleave(b), c.deinterleave(d)];
+    let (first, third) = first_and_third.deinterleave(third);
+    let (second, fourth) = second_and_fourth.deinterleave(fourth);
+    [first, second, third, fourth]
+}
+
 #[inline(always)]
 pub(super) fn store<S: Simd>(lanes: &mut Lanes, part: usize, vector: S::f32s) {
     vector.store_slice(&mut lanes[part * S::f32s::LEN..][..S::f32s::LEN]);

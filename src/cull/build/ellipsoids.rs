@@ -1,61 +1,38 @@
 //! Ellipsoids, and lights whose ellipsoid is found one by one.
 
-use core::marker::PhantomData;
-
 use fearless_simd::{Simd, SimdBase};
 use glam::Vec3;
 
-use super::source::{Frame, OfShape, Place, Source, scale};
+use super::source::{Frame, OfShape, Place, Source, four, scale};
 use super::vector::Vectors;
 use super::view::Ellipsoids;
 use crate::cull::shape::Lane;
 use crate::{
-    AnisotropicGgxLobe, Bound, Bounded, Ellipsoid, Fresnel, GgxLobe, MaskingShadowing, Stretch,
-    Vpl, Xi,
+    AnisotropicGgxLobe, Bound, Bounded, Ellipsoid, Fresnel, MaskingShadowing, Stretch, Vpl, Xi,
 };
 
-/// The numbers of an ellipsoid: both parts of the centre, the columns of R and the semi-axes.
-type OfEllipsoid<T> = [T; 18];
-
+/// Both parts of the centre, the columns of R and the semi-axes, in the order in which an ellipsoid holds
+/// them, which is how they are copied fastest; then Φ, and the position.
 #[inline]
-fn of_ellipsoid(ellipsoid: &Ellipsoid) -> OfEllipsoid<f32> {
+fn numbers(ellipsoid: &Ellipsoid, flux: f32, position: Vec3) -> [[f32; 4]; 6] {
     let ([q, o], r) = (ellipsoid.center_parts(), ellipsoid.rotation());
     let ([u, v, w], s) = ([r.x_axis, r.y_axis, r.z_axis], ellipsoid.semi_axes());
     [
-        q.x, q.y, q.z, o.x, o.y, o.z, u.x, u.y, u.z, v.x, v.y, v.z, w.x, w.y, w.z, s.x, s.y, s.z,
+        four(q, o.x),
+        [o.y, o.z, u.x, u.y],
+        [u.z, v.x, v.y, v.z],
+        four(w, s.x),
+        [s.y, s.z, flux, 0.0],
+        four(position, 0.0),
     ]
 }
 
-/// The stretches of ellipsoids around the origin, in place.
+/// The ellipsoids, Φ and the positions.
 #[inline(always)]
-fn placed_ellipsoids<S: Simd>(
-    simd: S,
-    numbers: OfEllipsoid<S::f32s>,
-    position: Vectors<S>,
-    scale: S::f32s,
-    frame: &Frame,
-) -> (OfShape<S, Stretch>, S::mask32s) {
-    let [
-        q_x,
-        q_y,
-        q_z,
-        o_x,
-        o_y,
-        o_z,
-        u_x,
-        u_y,
-        u_z,
-        v_x,
-        v_y,
-        v_z,
-        w_x,
-        w_y,
-        w_z,
-        s_x,
-        s_y,
-        s_z,
-    ] = numbers;
-    let semi_axes = Vectors::<S>::new(s_x, s_y, s_z);
+fn ellipsoids<S: Simd>(numbers: &[[S::f32s; 4]; 6]) -> (Ellipsoids<S>, S::f32s, Vectors<S>) {
+    let [[q_x, q_y, q_z, o_x], [o_y, o_z, u_x, u_y], numbers @ ..] = *numbers;
+    let [[u_z, v_x, v_y, v_z], [w_x, w_y, w_z, s_x], numbers @ ..] = numbers;
+    let [[s_y, s_z, flux, _], [p_x, p_y, p_z, _]] = numbers;
     let unit = Ellipsoids {
         parts: [Vectors::new(q_x, q_y, q_z), Vectors::new(o_x, o_y, o_z)],
         axes: [
@@ -63,10 +40,22 @@ fn placed_ellipsoids<S: Simd>(
             Vectors::new(v_x, v_y, v_z),
             Vectors::new(w_x, w_y, w_z),
         ],
-        semi_axes,
+        semi_axes: Vectors::new(s_x, s_y, s_z),
     };
+    (unit, flux, Vectors::new(p_x, p_y, p_z))
+}
+
+/// The stretches of ellipsoids around the origin, in place.
+#[inline(always)]
+fn placed_ellipsoids<S: Simd>(
+    simd: S,
+    unit: Ellipsoids<S>,
+    position: Vectors<S>,
+    scale: S::f32s,
+    frame: &Frame,
+) -> (OfShape<S, Stretch>, S::mask32s) {
     let zero = S::f32s::splat(simd, 0.0);
-    let somewhere = semi_axes.min_element().simd_gt(zero) & scale.simd_gt(zero);
+    let somewhere = unit.semi_axes.min_element().simd_gt(zero) & scale.simd_gt(zero);
     let placed = unit.placed(simd, position, scale);
     (placed.stretched(simd, &frame.view), somewhere)
 }
@@ -75,25 +64,26 @@ impl Source for Ellipsoid {
     type Light = Self;
     type Given = Place;
     type Shape = Stretch;
-    /// Those of the ellipsoid, the position and the scale.
-    type Numbers<T: Lane> = [T; 22];
+    /// With no flux.
+    type Fours<T: Lane> = [T; 6];
     type Rest = ();
 
-    fn numbers_of<T: Lane>(value: T) -> [T; 22] {
-        [value; 22]
+    fn fours_of<T: Lane>(value: T) -> [T; 6] {
+        [value; 6]
     }
 
     #[inline]
-    fn numbers(ellipsoid: &Self, (p, scale): Place) -> [f32; 22] {
-        let mut numbers = [0.0; 22];
-        let (unit, of_place) = numbers.split_at_mut(18);
-        unit.copy_from_slice(&of_ellipsoid(ellipsoid));
-        of_place.copy_from_slice(&[p.x, p.y, p.z, scale]);
-        numbers
+    fn numbers(ellipsoid: &Self, (position, _): Place) -> [[f32; 4]; 6] {
+        numbers(ellipsoid, 0.0, position)
     }
 
     #[inline]
     fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn given((_, scale): Place) -> f32 {
+        scale
+    }
 
     #[inline]
     fn may_reach(light: &Self, (_, scale): Place) -> bool {
@@ -103,64 +93,40 @@ impl Source for Ellipsoid {
     #[inline(always)]
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &[S::f32s; 22],
+        numbers: &[[S::f32s; 4]; 6],
+        scale: S::f32s,
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, Stretch>, S::mask32s) {
-        let [of_ellipsoid @ .., p_x, p_y, p_z, scale] = *numbers;
-        placed_ellipsoids(
-            simd,
-            of_ellipsoid,
-            Vectors::new(p_x, p_y, p_z),
-            scale,
-            frame,
-        )
+        let (unit, _, position) = ellipsoids(numbers);
+        placed_ellipsoids(simd, unit, position, scale, frame)
     }
-}
-
-/// The numbers of an ellipsoid around the origin, the position that it is put at, Φ and ξ.
-type OfLight<T> = [T; 23];
-
-#[inline]
-fn of_light(unit: &Ellipsoid, p: Vec3, flux: f32, xi: Xi) -> OfLight<f32> {
-    let mut numbers = [0.0; 23];
-    let (of_unit, of_place) = numbers.split_at_mut(18);
-    of_unit.copy_from_slice(&of_ellipsoid(unit));
-    of_place.copy_from_slice(&[p.x, p.y, p.z, flux, xi.get()]);
-    numbers
-}
-
-/// The stretches of the ellipsoids of lights.
-#[inline(always)]
-fn lit_ellipsoids<S: Simd>(
-    simd: S,
-    numbers: &OfLight<S::f32s>,
-    frame: &Frame,
-) -> (OfShape<S, Stretch>, S::mask32s) {
-    let [unit @ .., p_x, p_y, p_z, flux, xi] = *numbers;
-    let scale = scale(simd, &frame.roulette, flux, xi);
-    placed_ellipsoids(simd, unit, Vectors::new(p_x, p_y, p_z), scale, frame)
 }
 
 impl<F: Fresnel, G: MaskingShadowing> Source for AnisotropicGgxLobe<F, G> {
     type Light = Vpl<Self>;
     type Given = Xi;
     type Shape = Stretch;
-    type Numbers<T: Lane> = OfLight<T>;
+    type Fours<T: Lane> = [T; 6];
     type Rest = ();
 
-    fn numbers_of<T: Lane>(value: T) -> OfLight<T> {
-        [value; 23]
+    fn fours_of<T: Lane>(value: T) -> [T; 6] {
+        [value; 6]
     }
 
     #[inline]
-    fn numbers(light: &Self::Light, xi: Xi) -> OfLight<f32> {
+    fn numbers(light: &Self::Light, _: Xi) -> [[f32; 4]; 6] {
         let unit = light.lobe().unit_bound();
-        of_light(&unit, light.position(), light.flux(), xi)
+        numbers(&unit, light.flux(), light.position())
     }
 
     #[inline]
     fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn given(xi: Xi) -> f32 {
+        xi.get()
+    }
 
     #[inline]
     fn may_reach(light: &Self::Light, _: Xi) -> bool {
@@ -170,50 +136,13 @@ impl<F: Fresnel, G: MaskingShadowing> Source for AnisotropicGgxLobe<F, G> {
     #[inline(always)]
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &OfLight<S::f32s>,
+        numbers: &[[S::f32s; 4]; 6],
+        xi: S::f32s,
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, Stretch>, S::mask32s) {
-        lit_ellipsoids(simd, numbers, frame)
-    }
-}
-
-/// The tighter bound of a GGX lobe.
-#[derive(Clone, Copy, Debug)]
-pub struct Tight<F, G>(PhantomData<(F, G)>);
-
-impl<F: Fresnel, G: MaskingShadowing> Source for Tight<F, G> {
-    type Light = Vpl<GgxLobe<F, G>>;
-    type Given = Xi;
-    type Shape = Stretch;
-    type Numbers<T: Lane> = OfLight<T>;
-    type Rest = ();
-
-    fn numbers_of<T: Lane>(value: T) -> OfLight<T> {
-        [value; 23]
-    }
-
-    #[inline]
-    fn numbers(light: &Self::Light, xi: Xi) -> OfLight<f32> {
-        let unit = light.lobe().tight_bound();
-        of_light(&unit, light.position(), light.flux(), xi)
-    }
-
-    #[inline]
-    fn rest(_: &Self::Light) {}
-
-    #[inline]
-    fn may_reach(light: &Self::Light, xi: Xi) -> bool {
-        <GgxLobe<F, G> as Source>::may_reach(light, xi)
-    }
-
-    #[inline(always)]
-    fn shapes<S: Simd>(
-        simd: S,
-        numbers: &OfLight<S::f32s>,
-        _: &[()],
-        frame: &Frame,
-    ) -> (OfShape<S, Stretch>, S::mask32s) {
-        lit_ellipsoids(simd, numbers, frame)
+        let (unit, flux, position) = ellipsoids(numbers);
+        let scale = scale(simd, &frame.roulette, flux, xi);
+        placed_ellipsoids(simd, unit, position, scale, frame)
     }
 }

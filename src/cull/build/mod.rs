@@ -2,7 +2,7 @@
 //!
 //! The numbers of sixteen lights are laid side by side, and vectors go over them as the scalar functions
 //! go over one light, in the same operations and in the same order, without fused ones: a shape has the
-//! bits that they give it. The steps are those of the corridor: `spheroids`, `spheres` and
+//! bits that they give it. The steps are those of the corridor: `spheroids`, `tight`, `spheres` and
 //! `ellipsoids` make bounds of lights, `place` puts them in place, and `view` before the camera.
 
 mod ellipsoids;
@@ -10,6 +10,7 @@ mod place;
 mod source;
 mod spheres;
 mod spheroids;
+mod tight;
 mod vector;
 mod view;
 
@@ -18,12 +19,11 @@ use core::ops::Range;
 use fearless_simd::{Level, Simd, dispatch};
 use glam::Vec3;
 
-use self::ellipsoids::Tight;
-use self::source::{Frame, Lights, Source};
+use self::source::{Frame, GROUP, Group, Source};
+use self::tight::Tight;
 use self::view::View;
 use super::LightBatch;
 use super::culler::{at_most, widest};
-use super::lanes::LANES;
 use crate::{
     AnisotropicGgxLobe, Bound, Bounded, Camera, ConstantLobe, Ellipsoid, Fresnel, GgxLobe,
     LambertLobe, MaskingShadowing, Roulette, Sphere, Spheroid, Stretch, Vpl, Xi,
@@ -113,8 +113,8 @@ impl BatchBuilder {
         self.fill::<L>(lights.into_iter(), batch);
     }
 
-    /// Adds lights as [`add`](Self::add) does, with their [tighter bound](Vpl::tight_bound), which is
-    /// found one by one.
+    /// Adds lights as [`add`](Self::add) does, with their [tight bound](Vpl::tight_bound). Its table is read
+    /// for one light after the other, and all else is found in vectors.
     pub fn add_tight<'a, F: Fresnel + 'a, G: MaskingShadowing + 'a>(
         &self,
         lights: impl IntoIterator<Item = (u32, &'a Vpl<GgxLobe<F, G>>, Xi)>,
@@ -147,17 +147,17 @@ impl BatchBuilder {
         let Some((number, light, given)) = lights.next() else {
             return;
         };
-        let mut group = [Lights::<T>::splat(light, given); CHUNKS];
+        let mut group = Group::<T>::splat(light, given);
         let mut first = batch.next_lane();
-        group[0].set(first, number, light, given);
+        group.set(first, number, light, given);
         let mut end = first + 1;
         for (number, light, given) in lights {
-            if end == CHUNKS * LANES {
+            if end == GROUP {
                 self.flush(&mut group, first..end, batch);
                 first = batch.next_lane();
                 end = first;
             }
-            group[end / LANES].set(end % LANES, number, light, given);
+            group.set(end, number, light, given);
             end += 1;
         }
         self.flush(&mut group, first..end, batch);
@@ -166,28 +166,17 @@ impl BatchBuilder {
     /// Adds the lights of these lanes of a group.
     fn flush<T: Source>(
         &self,
-        group: &mut [Lights<T>; CHUNKS],
+        group: &mut Group<T>,
         lanes: Range<usize>,
         batch: &mut LightBatch<T::Shape>,
     ) {
-        let lights = &mut group[..lanes.end.div_ceil(LANES)];
-        // From bit 0, which is lane 0 of the first sixteen.
-        let wanted = (u64::MAX >> (u64::BITS as usize - lanes.end)) & (u64::MAX << lanes.start);
-        dispatch!(self.level, simd => shape(simd, lights, wanted, &self.frame));
-        for sixteen in lights {
-            batch.append(&sixteen.chunk, sixteen.shaped, sixteen.reach);
-        }
+        dispatch!(self.level, simd => shape(simd, group, &lanes, &self.frame));
+        group.append_to(batch, lanes.end);
     }
 }
 
-/// Makes shapes of the lights that are `wanted`.
+/// Makes shapes of the lights in these lanes.
 #[inline(always)]
-fn shape<S: Simd, T: Source>(simd: S, lights: &mut [Lights<T>], mut wanted: u64, frame: &Frame) {
-    for sixteen in lights {
-        sixteen.shape(simd, wanted as u32, frame);
-        wanted >>= LANES;
-    }
+fn shape<S: Simd, T: Source>(simd: S, group: &mut Group<T>, lanes: &Range<usize>, frame: &Frame) {
+    group.shape(simd, lanes, frame);
 }
-
-/// How many chunks are made in a row: while one waits for its roots, the next can begin.
-const CHUNKS: usize = u64::BITS as usize / LANES;

@@ -119,7 +119,7 @@ fn rounding_of_sum<S: Simd>(sum: Vectors<S>) -> S::f32s {
 
 /// [`Vec3::any_orthonormal_pair`](glam::Vec3::any_orthonormal_pair).
 #[inline(always)]
-fn any_orthonormal_pair<S: Simd>(simd: S, u: Vectors<S>) -> (Vectors<S>, Vectors<S>) {
+pub(super) fn any_orthonormal_pair<S: Simd>(simd: S, u: Vectors<S>) -> (Vectors<S>, Vectors<S>) {
     let one = S::f32s::splat(simd, 1.0);
     let Vectors { x, y, z } = u;
     let sign = one.copysign(z);

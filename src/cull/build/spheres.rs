@@ -1,8 +1,8 @@
 //! Diffuse lights, point lights, and spheres.
 
-use fearless_simd::{Simd, SimdBase, SimdFloat};
+use fearless_simd::{Simd, SimdBase};
 
-use super::source::{Frame, OfShape, Place, Source, scale};
+use super::source::{Frame, OfShape, Place, Source, four, scale};
 use super::vector::{Vectors, round_up};
 use super::view::Spheres;
 use crate::cull::shape::Lane;
@@ -12,38 +12,47 @@ impl Source for LambertLobe {
     type Light = Vpl<Self>;
     type Given = Xi;
     type Shape = CameraSphere;
-    /// The position, Φ, ξ, n and ρ.
-    type Numbers<T: Lane> = [T; 9];
+    /// The position and Φ, n and √ρ.
+    type Fours<T: Lane> = [T; 2];
     type Rest = ();
 
-    fn numbers_of<T: Lane>(value: T) -> [T; 9] {
-        [value; 9]
+    fn fours_of<T: Lane>(value: T) -> [T; 2] {
+        [value; 2]
     }
 
     #[inline]
-    fn numbers(light: &Self::Light, xi: Xi) -> [f32; 9] {
-        let (p, n) = (light.position(), light.lobe().normal());
-        let albedo = light.lobe().albedo();
-        [p.x, p.y, p.z, light.flux(), xi.get(), n.x, n.y, n.z, albedo]
+    fn numbers(light: &Self::Light, _: Xi) -> [[f32; 4]; 2] {
+        let lobe = light.lobe();
+        [
+            four(light.position(), light.flux()),
+            four(*lobe.normal(), lobe.albedo_root()),
+        ]
     }
 
     #[inline]
     fn rest(_: &Self::Light) {}
 
     #[inline]
+    fn given(xi: Xi) -> f32 {
+        xi.get()
+    }
+
+    #[inline]
     fn may_reach(light: &Self::Light, _: Xi) -> bool {
-        light.flux() > 0.0 && light.lobe().albedo() > 0.0
+        // That a surface reflects nothing is too rare to ask each time.
+        light.flux() > 0.0
     }
 
     #[inline(always)]
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &[S::f32s; 9],
+        numbers: &[[S::f32s; 4]; 2],
+        xi: S::f32s,
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, CameraSphere>, S::mask32s) {
-        let [p_x, p_y, p_z, flux, xi, n_x, n_y, n_z, albedo] = *numbers;
-        let reach = albedo.sqrt() * Self::ROOT_OF_ONE_OVER_PI;
+        let [[p_x, p_y, p_z, flux], [n_x, n_y, n_z, root]] = *numbers;
+        let reach = root * Self::ROOT_OF_ONE_OVER_PI;
         let unit = Spheres {
             center: Vectors::<S>::new(n_x, n_y, n_z) * (reach * Self::CENTER),
             radius: round_up::<S>(reach * Self::RADIUS, 16),
@@ -57,22 +66,26 @@ impl Source for ConstantLobe {
     type Light = Vpl<Self>;
     type Given = Xi;
     type Shape = CameraSphere;
-    /// The position, Φ and ξ.
-    type Numbers<T: Lane> = [T; 5];
+    /// The position and Φ.
+    type Fours<T: Lane> = [T; 1];
     type Rest = ();
 
-    fn numbers_of<T: Lane>(value: T) -> [T; 5] {
-        [value; 5]
+    fn fours_of<T: Lane>(value: T) -> [T; 1] {
+        [value; 1]
     }
 
     #[inline]
-    fn numbers(light: &Self::Light, xi: Xi) -> [f32; 5] {
-        let p = light.position();
-        [p.x, p.y, p.z, light.flux(), xi.get()]
+    fn numbers(light: &Self::Light, _: Xi) -> [[f32; 4]; 1] {
+        [four(light.position(), light.flux())]
     }
 
     #[inline]
     fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn given(xi: Xi) -> f32 {
+        xi.get()
+    }
 
     #[inline]
     fn may_reach(light: &Self::Light, _: Xi) -> bool {
@@ -82,11 +95,12 @@ impl Source for ConstantLobe {
     #[inline(always)]
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &[S::f32s; 5],
+        numbers: &[[S::f32s; 4]; 1],
+        xi: S::f32s,
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, CameraSphere>, S::mask32s) {
-        let [p_x, p_y, p_z, flux, xi] = *numbers;
+        let [[p_x, p_y, p_z, flux]] = *numbers;
         let bound = Self.unit_bound();
         let zero = S::f32s::splat(simd, 0.0);
         let unit = Spheres {
@@ -102,22 +116,26 @@ impl Source for Sphere {
     type Light = Self;
     type Given = Place;
     type Shape = CameraSphere;
-    /// The centre, the radius, the position and the scale.
-    type Numbers<T: Lane> = [T; 8];
+    /// The centre and the radius, and the position.
+    type Fours<T: Lane> = [T; 2];
     type Rest = ();
 
-    fn numbers_of<T: Lane>(value: T) -> [T; 8] {
-        [value; 8]
+    fn fours_of<T: Lane>(value: T) -> [T; 2] {
+        [value; 2]
     }
 
     #[inline]
-    fn numbers(sphere: &Self, (p, scale): Place) -> [f32; 8] {
-        let c = sphere.center();
-        [c.x, c.y, c.z, sphere.radius(), p.x, p.y, p.z, scale]
+    fn numbers(sphere: &Self, (p, _): Place) -> [[f32; 4]; 2] {
+        [four(sphere.center(), sphere.radius()), four(p, 0.0)]
     }
 
     #[inline]
     fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn given((_, scale): Place) -> f32 {
+        scale
+    }
 
     #[inline]
     fn may_reach(light: &Self, (_, scale): Place) -> bool {
@@ -127,11 +145,12 @@ impl Source for Sphere {
     #[inline(always)]
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &[S::f32s; 8],
+        numbers: &[[S::f32s; 4]; 2],
+        scale: S::f32s,
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, CameraSphere>, S::mask32s) {
-        let [x, y, z, radius, p_x, p_y, p_z, scale] = *numbers;
+        let [[x, y, z, radius], [p_x, p_y, p_z, _]] = *numbers;
         let center = Vectors::new(x, y, z);
         let unit = Spheres { center, radius };
         placed_spheres(simd, unit, Vectors::new(p_x, p_y, p_z), scale, frame)

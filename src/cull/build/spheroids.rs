@@ -5,8 +5,8 @@ use core::f32::consts::FRAC_1_PI;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
 
 use super::place::Spheroids;
-use super::source::{Frame, OfShape, Place, Source, scale};
-use super::vector::{Vectors, Wide, dot, length_of_cross, round_up};
+use super::source::{Frame, OfShape, Place, Source, four, scale};
+use super::vector::{Vectors, Wide, cross, dot, length, round_up};
 use crate::bound::AXIS_TILT_RADIANS;
 use crate::cull::lanes::LANES;
 use crate::cull::shape::Lane;
@@ -16,39 +16,33 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
     type Light = Vpl<Self>;
     type Given = Xi;
     type Shape = Stretch;
-    /// The position, Φ, ξ, n, ω_i, μ, √(kμ² + α²) and α.
-    type Numbers<T: Lane> = [T; 14];
+    /// The position and Φ, n and μ, ω_i and √(kμ² + α²), and α.
+    type Fours<T: Lane> = [T; 4];
     type Rest = F;
 
-    fn numbers_of<T: Lane>(value: T) -> [T; 14] {
-        [value; 14]
+    fn fours_of<T: Lane>(value: T) -> [T; 4] {
+        [value; 4]
     }
 
     #[inline]
-    fn numbers(light: &Self::Light, xi: Xi) -> [f32; 14] {
-        let (p, lobe) = (light.position(), light.lobe());
-        let (n, w) = (lobe.normal(), lobe.incoming());
+    fn numbers(light: &Self::Light, _: Xi) -> [[f32; 4]; 4] {
+        let lobe = light.lobe();
         [
-            p.x,
-            p.y,
-            p.z,
-            light.flux(),
-            xi.get(),
-            n.x,
-            n.y,
-            n.z,
-            w.x,
-            w.y,
-            w.z,
-            lobe.incident_cosine(),
-            lobe.incident_root(),
-            lobe.ggx().roughness(),
+            four(light.position(), light.flux()),
+            four(*lobe.normal(), lobe.incident_cosine()),
+            four(*lobe.incoming(), lobe.incident_root()),
+            [lobe.ggx().roughness(), 0.0, 0.0, 0.0],
         ]
     }
 
     #[inline]
     fn rest(light: &Self::Light) -> F {
         *light.lobe().fresnel()
+    }
+
+    #[inline]
+    fn given(xi: Xi) -> f32 {
+        xi.get()
     }
 
     #[inline]
@@ -59,16 +53,17 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
     #[inline(always)]
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &[S::f32s; 14],
+        numbers: &[[S::f32s; 4]; 4],
+        xi: S::f32s,
         fresnels: &[F],
         frame: &Frame,
     ) -> (OfShape<S, Stretch>, S::mask32s) {
-        let [p_x, p_y, p_z, flux, xi, numbers @ ..] = *numbers;
-        let [n_x, n_y, n_z, w_x, w_y, w_z, cosine, root, alpha] = numbers;
+        let [[p_x, p_y, p_z, flux], numbers @ ..] = *numbers;
+        let [[n_x, n_y, n_z, cosine], [w_x, w_y, w_z, root], [alpha, ..]] = numbers;
         let n = Vectors::<S>::new(n_x, n_y, n_z).widened();
         let w = Vectors::<S>::new(w_x, w_y, w_z).widened();
 
-        let sine = length_of_cross(n, w).narrowed();
+        let sine = length(cross(n, w)).narrowed();
         let smallest_cosine = cosine / ((sine + 1.0) * 2.0).sqrt();
         let most = max_fresnel::<S, F>(simd, fresnels, smallest_cosine);
         let lit = cosine.simd_gt(S::f32s::splat(simd, 0.0));
@@ -89,7 +84,11 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
 
 /// [`Fresnel::maximum`], one lane after the other.
 #[inline(always)]
-fn max_fresnel<S: Simd, F: Fresnel>(simd: S, fresnels: &[F], cosines: S::f32s) -> S::f32s {
+pub(super) fn max_fresnel<S: Simd, F: Fresnel>(
+    simd: S,
+    fresnels: &[F],
+    cosines: S::f32s,
+) -> S::f32s {
     let mut most = [0.0; LANES];
     let mut lanes = [0.0; LANES];
     cosines.store_slice(&mut lanes[..S::f32s::LEN]);
@@ -101,7 +100,7 @@ fn max_fresnel<S: Simd, F: Fresnel>(simd: S, fresnels: &[F], cosines: S::f32s) -
 
 /// [`GgxLobe::mirror_direction`].
 #[inline(always)]
-fn mirror_direction<S: Simd>(n: [Wide<S>; 3], w: [Wide<S>; 3]) -> Vectors<S> {
+pub(super) fn mirror_direction<S: Simd>(n: [Wide<S>; 3], w: [Wide<S>; 3]) -> Vectors<S> {
     let twice = dot(n, w) * 2.0 / dot(n, n);
     Vectors::new(
         (twice * n[0] - w[0]).narrowed(),
@@ -122,25 +121,30 @@ impl Source for Spheroid {
     type Light = Self;
     type Given = Place;
     type Shape = Stretch;
-    /// The focus, the axis, r, α, the position and the scale.
-    type Numbers<T: Lane> = [T; 12];
+    /// The focus and r, the axis and α, and the position.
+    type Fours<T: Lane> = [T; 3];
     type Rest = ();
 
-    fn numbers_of<T: Lane>(value: T) -> [T; 12] {
-        [value; 12]
+    fn fours_of<T: Lane>(value: T) -> [T; 3] {
+        [value; 3]
     }
 
     #[inline]
-    fn numbers(spheroid: &Self, (p, scale): Place) -> [f32; 12] {
-        let (f, u) = (spheroid.focus(), spheroid.axis());
-        let (radius, alpha) = (spheroid.radius(), spheroid.roughness());
+    fn numbers(spheroid: &Self, (p, _): Place) -> [[f32; 4]; 3] {
         [
-            f.x, f.y, f.z, u.x, u.y, u.z, radius, alpha, p.x, p.y, p.z, scale,
+            four(spheroid.focus(), spheroid.radius()),
+            four(*spheroid.axis(), spheroid.roughness()),
+            four(p, 0.0),
         ]
     }
 
     #[inline]
     fn rest(_: &Self::Light) {}
+
+    #[inline]
+    fn given((_, scale): Place) -> f32 {
+        scale
+    }
 
     #[inline]
     fn may_reach(light: &Self, (_, scale): Place) -> bool {
@@ -150,24 +154,13 @@ impl Source for Spheroid {
     #[inline(always)]
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &[S::f32s; 12],
+        numbers: &[[S::f32s; 4]; 3],
+        scale: S::f32s,
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, Stretch>, S::mask32s) {
-        let [
-            f_x,
-            f_y,
-            f_z,
-            u_x,
-            u_y,
-            u_z,
-            radius,
-            roughness,
-            p_x,
-            p_y,
-            p_z,
-            scale,
-        ] = *numbers;
+        let [[f_x, f_y, f_z, radius], numbers @ ..] = *numbers;
+        let [[u_x, u_y, u_z, roughness], [p_x, p_y, p_z, _]] = numbers;
         let unit = Spheroids::<S> {
             focus: Vectors::new(f_x, f_y, f_z),
             axis: Vectors::new(u_x, u_y, u_z),

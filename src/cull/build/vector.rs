@@ -3,7 +3,7 @@
 
 use core::ops::{Add, Div, Mul, Sub};
 
-use fearless_simd::{Simd, SimdBase, SimdFloat, SimdNarrow, SimdWiden};
+use fearless_simd::{MaskNarrow, Simd, SimdBase, SimdFloat, SimdNarrow, SimdWiden};
 use glam::{Mat3, Vec3};
 
 use crate::math;
@@ -45,11 +45,6 @@ impl<S: Simd> Vectors<S> {
     #[inline(always)]
     pub fn dot(self, other: Self) -> S::f32s {
         self.x * other.x + self.y * other.y + self.z * other.z
-    }
-
-    #[inline(always)]
-    pub fn length(self) -> S::f32s {
-        self.dot(self).sqrt()
     }
 
     #[inline(always)]
@@ -103,6 +98,15 @@ impl<S: Simd> Add<Vec3> for Vectors<S> {
     }
 }
 
+impl<S: Simd> Sub for Vectors<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
+    }
+}
+
 impl<S: Simd> Mul<S::f32s> for Vectors<S> {
     type Output = Self;
 
@@ -135,6 +139,21 @@ impl<S: Simd> Wide<S> {
     pub fn new(numbers: S::f32s) -> Self {
         let (low, high) = numbers.widen();
         Self { low, high }
+    }
+
+    #[inline(always)]
+    pub fn splat(simd: S, number: f64) -> Self {
+        let numbers = S::f64s::splat(simd, number);
+        Self {
+            low: numbers,
+            high: numbers,
+        }
+    }
+
+    #[inline(always)]
+    pub fn is_positive(self, simd: S) -> S::mask32s {
+        let zero = S::f64s::splat(simd, 0.0);
+        self.low.simd_gt(zero).narrow(self.high.simd_gt(zero))
     }
 
     /// Rounded.
@@ -236,17 +255,31 @@ pub(super) fn dot_with<S: Simd>(a: [f64; 3], b: [Wide<S>; 3]) -> Wide<S> {
     b[0] * a[0] + b[1] * a[1] + b[2] * a[2]
 }
 
-/// [`math::length`] of [`math::cross`].
+/// [`math::cross`].
 #[inline(always)]
-pub(super) fn length_of_cross<S: Simd>(a: [Wide<S>; 3], b: [Wide<S>; 3]) -> Wide<S> {
-    let x = a[1] * b[2] - a[2] * b[1];
-    let y = a[2] * b[0] - a[0] * b[2];
-    let z = a[0] * b[1] - a[1] * b[0];
-    dot([x, y, z], [x, y, z]).sqrt()
+pub(super) fn cross<S: Simd>(a: [Wide<S>; 3], b: [Wide<S>; 3]) -> [Wide<S>; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// [`math::length`].
+#[inline(always)]
+pub(super) fn length<S: Simd>(v: [Wide<S>; 3]) -> Wide<S> {
+    dot(v, v).sqrt()
 }
 
 /// [`math::round_up`].
 #[inline(always)]
 pub(super) fn round_up<S: Simd>(x: S::f32s, roundings: u16) -> S::f32s {
     x * math::round_up(1.0, roundings)
+}
+
+/// [`math::fifth_power`].
+#[inline(always)]
+pub(super) fn fifth_power<S: Simd>(x: S::f32s) -> S::f32s {
+    let squared = x * x;
+    squared * squared * x
 }

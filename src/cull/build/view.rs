@@ -13,10 +13,7 @@ use crate::{Camera, math};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
     rotation: Mat3,
-    /// The rows of the rotation, and what each of them makes of no offset from the light: a zero, whose
-    /// sign counts.
     rows: [[f64; 3]; 3],
-    nothing: [f64; 3],
     translation: [f64; 3],
     translation_abs: Vec3,
     /// Shares of lengths.
@@ -33,7 +30,6 @@ impl View {
         Self {
             rotation,
             rows: rows.map(|row| row.to_array().map(f64::from)),
-            nothing: rows.map(|row| math::dot(row, Vec3::ZERO)),
             translation: camera.translation().to_array().map(f64::from),
             translation_abs: camera.translation().abs(),
             of_box: 9.0 * camera.corner_secant(),
@@ -60,7 +56,7 @@ impl View {
         let wide = point.widened();
         let mut seen = point.to_array();
         for (i, coordinate) in seen.iter_mut().enumerate() {
-            let turned = dot_with(self.rows[i], wide) + self.nothing[i];
+            let turned = dot_with(self.rows[i], wide);
             *coordinate = (turned + self.translation[i]).narrowed();
         }
         Vectors::from_array(seen)
@@ -75,7 +71,7 @@ impl View {
         reach: S::f32s,
     ) -> S::f32s {
         let farthest_depth = center.z.max(0.0) + reach;
-        let of_center = center.length() * 6.0;
+        let of_center = center.abs().element_sum() * 6.0;
         let of_box = farthest_depth * self.of_box;
         let of_terms = (terms + self.translation_abs).element_sum() * Camera::ROUNDINGS_OF_TERMS;
         (of_center + of_box) * math::UNIT_ROUNDOFF + of_terms
