@@ -84,9 +84,12 @@ fn functions_of_one_contain() {
         ("square", 3.0, Real::square, |x| x * x),
         ("reciprocal", 0.3, |x| x.reciprocal(), |x| 1.0 / x),
         ("root", 0.3, Real::sqrt, f64::sqrt),
-        ("reciprocal root", 0.3, Real::reciprocal_root, |x| {
-            1.0 / x.sqrt()
-        }),
+        (
+            "reciprocal root",
+            0.3,
+            |x| x.reciprocal_root(),
+            |x| 1.0 / x.sqrt(),
+        ),
         ("fifth power", 1.0, |x| x.fifth_power(), |x| x.powi(5)),
         ("multiple", 3.0, |x| x * -1.7, |x| x * -1.7),
     ];

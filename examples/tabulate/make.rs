@@ -243,7 +243,7 @@ fn points([x, y, z]: [f64; 3], [steps, steps_across]: [usize; 2]) -> Vec<[f64; 3
         let point = lobe.point(alpha.powi(2) + (1.0 - alpha.powi(2)) * m[2].powi(2), m);
         let is_above = point.e > 0.0;
         is_above.then(|| {
-            let squared = masked(&lobe, &point) * fresnel(point.t) / fresnel(c);
+            let squared = masked(&lobe, &point) * fresnel(point.t.clamp(0.0, 1.0)) / fresnel(c);
             point.z.map(|zeta| squared.sqrt() * zeta)
         })
     };

@@ -61,6 +61,14 @@ impl Taylor {
         self.chain_positive([over, -over * over, over * over * over], |x| 1.0 / x)
     }
 
+    /// One over its root; not finite unless it is positive.
+    pub fn reciprocal_root(&self) -> Self {
+        let over = 1.0 / self.constant;
+        let root = over.sqrt();
+        let slope = -0.5 * root * over;
+        self.chain_positive([root, slope, -0.75 * slope * over], |x| 1.0 / x.sqrt())
+    }
+
     /// Its fifth power.
     pub fn fifth_power(&self) -> Self {
         let (x, d) = (self.constant, self.reach());
@@ -109,11 +117,8 @@ impl Real for Taylor {
         self.chain_positive([root, slope, -0.25 * slope * over], f64::sqrt)
     }
 
-    /// Not finite unless it is positive.
-    fn reciprocal_root(self) -> Self {
-        let over = 1.0 / self.constant;
-        let root = over.sqrt();
-        let slope = -0.5 * root * over;
-        self.chain_positive([root, slope, -0.75 * slope * over], |x| 1.0 / x.sqrt())
+    /// Not finite unless `of` is positive.
+    fn over_root(self, of: Self) -> Self {
+        self * of.reciprocal_root()
     }
 }

@@ -28,7 +28,7 @@ impl<T: Real> Lobe<T> {
         let alpha2 = self.alpha.square();
         let a = self.cd * m3 - self.sd * m1;
         let e = a * m3 * 2.0 - self.cd * n;
-        let t = self.rl * a * n.reciprocal_root();
+        let t = (self.rl * a).over_root(n);
         let c2 = self.c.square() * 2.0 - one;
         let (m11, m22) = (m1.square(), m2.square());
         let z1 = m3.square() - alpha2 * (m11 + c2 * m22);

@@ -16,7 +16,7 @@ pub trait Real:
     fn constant(x: f64) -> Self;
     fn square(self) -> Self;
     fn sqrt(self) -> Self;
-    fn reciprocal_root(self) -> Self;
+    fn over_root(self, of: Self) -> Self;
 }
 
 impl Real for f64 {
@@ -32,7 +32,7 @@ impl Real for f64 {
         self.sqrt()
     }
 
-    fn reciprocal_root(self) -> Self {
-        1.0 / self.sqrt()
+    fn over_root(self, of: Self) -> Self {
+        self / of.sqrt()
     }
 }
