@@ -46,12 +46,13 @@ impl Mean {
         }
     }
 
-    /// How many standard errors it is from zero.
+    /// How many standard errors it is from zero; NaN if nothing is left to chance.
     pub fn sigmas(self) -> f64 {
-        if self.standard_error > 0.0 {
+        // Samples that are all the same differ by rounding at most.
+        if self.standard_error > 1e-12 * self.mean.abs() {
             self.mean / self.standard_error
         } else {
-            0.0
+            f64::NAN
         }
     }
 }

@@ -23,7 +23,7 @@ pub struct Effort {
 
 impl Effort {
     pub const FULL: Self = Self {
-        size: [480, 270],
+        size: [400, 224],
         vpls: 16384,
         seeds: 64,
         times: 5,

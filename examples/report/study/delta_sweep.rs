@@ -202,7 +202,7 @@ fn sweep(subject: &Subject) -> Vec<Row> {
         look: method.look(),
         delta: delta.into(),
         share: 1,
-        ms: stage.milliseconds(method, delta),
+        ms: stage.milliseconds(method, delta, subject.effort.times),
         rmse,
         bias,
     };

@@ -96,7 +96,8 @@ fn compare(subject: &Subject, gloss: Gloss) -> Vec<Row> {
     let stage = Stage::new(subject, gloss, INTERLEAVE);
     let frames = stage.frames();
     let truth = subject.truth_of(&stage.frame(1.0), &frames[0]);
-    let time = stage.milliseconds(PAPERS, DELTA);
+    let times = subject.effort.times;
+    let time = stage.milliseconds(PAPERS, DELTA, times);
     let row = |method: Method| {
         let delta = if method == PAPERS {
             DELTA
@@ -106,7 +107,7 @@ fn compare(subject: &Subject, gloss: Gloss) -> Vec<Row> {
         Row {
             method,
             delta,
-            ms: stage.milliseconds(method, delta),
+            ms: stage.milliseconds(method, delta, times),
             rmse: error(&stage, &frames, &truth, delta),
         }
     };
@@ -116,10 +117,14 @@ fn compare(subject: &Subject, gloss: Gloss) -> Vec<Row> {
 /// The δ with which `method` takes `time` in ms, by bisection; within what the sweep covers.
 fn delta_for(stage: &Stage, method: Method, time: f64) -> f32 {
     let (mut low, mut high) = (1e-7_f32, 10.0_f32);
-    let steps = if stage.subject.effort.is_quick { 5 } else { 10 };
+    let (steps, times) = if stage.subject.effort.is_quick {
+        (5, 1)
+    } else {
+        (10, 3)
+    };
     for _ in 0..steps {
         let middle = (low * high).sqrt();
-        if stage.milliseconds(method, middle) > time {
+        if stage.milliseconds(method, middle, times) > time {
             low = middle;
         } else {
             high = middle;
