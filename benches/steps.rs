@@ -233,6 +233,15 @@ fn bound(criterion: &mut Criterion) {
     });
     per_item(
         &mut group,
+        "triaxial ellipsoid, no Fresnel",
+        &glossy_lights(NoFresnel),
+        |light| light.lobe().triaxial_bound(),
+    );
+    per_item(&mut group, "triaxial ellipsoid, Schlick", &metal, |light| {
+        light.lobe().triaxial_bound()
+    });
+    per_item(
+        &mut group,
         "anisotropic, Schlick",
         &brushed_lights(),
         |light| light.lobe().unit_bound(),
