@@ -22,6 +22,10 @@ pub struct Camera {
     translation: Vec3,
     /// How far the rotation is from orthonormal.
     rotation_deviation: f32,
+    /// A point of world space next to the eye, and what rounding leaves between them, in camera space.
+    anchor: Vec3,
+    anchor_seen: Vec3,
+    rounding_of_anchor: f32,
     /// Slope (x/z, y/z) of a point = NDC · scale + offset.
     slope_scale: Vec2,
     slope_offset: Vec2,
@@ -161,16 +165,37 @@ impl Camera {
             let valid = "its near and far planes must be positive and distinct; element (2, 3)";
             return Err(refused(depth_numerator, valid));
         }
-        Ok(Self {
+        let translation = error::finite("translation of the view", translation)?;
+        let mut camera = Self {
             rotation,
-            translation: error::finite("translation of the view", translation)?,
+            translation,
             rotation_deviation: error::orthonormal("view matrix", rotation, 1e-4)?,
+            anchor: Vec3::ZERO,
+            anchor_seen: translation,
+            rounding_of_anchor: 0.0,
             slope_scale,
             slope_offset,
             corner_secant,
             depth_numerator,
             depth_offset,
-        })
+        };
+        camera.move_anchor_to_eye();
+        Ok(camera)
+    }
+
+    /// Any anchor will do, and the world's origin where the eye is too far for `f32`.
+    fn move_anchor_to_eye(&mut self) {
+        // Once more for what the rotation is off from orthonormal.
+        for _ in 0..2 {
+            let anchor = self.anchor - self.rotation.transpose() * self.anchor_seen;
+            let seen = self.to_camera_space(anchor);
+            if seen.is_finite() {
+                (self.anchor, self.anchor_seen) = (anchor, seen);
+            }
+        }
+        // `anchor_seen` is rounded itself, and counts as a part of what is seen.
+        self.rounding_of_anchor = 10.0 * math::UNIT_ROUNDOFF * self.anchor_seen.abs().element_sum()
+            + self.rounding_of_terms([self.anchor, Vec3::ZERO]);
     }
 
     /// What [`of_parts`](Self::of_parts) makes this camera of.
@@ -206,6 +231,24 @@ impl Camera {
     fn turned_and_moved(&self, turned: impl Fn(Vec3) -> f64) -> Vec3 {
         let coordinate = |i| (turned(self.rotation.row(i)) + f64::from(self.translation[i])) as f32;
         Vec3::new(coordinate(0), coordinate(1), coordinate(2))
+    }
+
+    /// `point` of world space in camera space, in `f32` alone: off by at most 9u of its length and
+    /// [`rounding_of_anchor`](Self::rounding_of_anchor), wherever the world's origin is.
+    pub(crate) fn seen_from_anchor(&self, point: Vec3) -> Vec3 {
+        self.rotation * (point - self.anchor) + self.anchor_seen
+    }
+
+    /// What [`seen_from_anchor`](Self::seen_from_anchor) loses because the anchor is
+    /// not the eye, in length.
+    pub(crate) fn rounding_of_anchor(&self) -> f32 {
+        self.rounding_of_anchor
+    }
+
+    /// The anchor in world space and in camera space.
+    #[cfg(feature = "cull")]
+    pub(crate) fn anchor(&self) -> [Vec3; 2] {
+        [self.anchor, self.anchor_seen]
     }
 
     /// `point` of camera space in world space, to rounding; the eye is where the origin goes.

@@ -35,7 +35,7 @@
 //! - 9u s z/r_min for the box, z ≤ max(c′_z, 0) + r_max the greatest depth of p.
 //!
 //! The semi-axes are enlarged by the sum, so that such a tile is never found apart from the light.
-//! `ARCHITECTURE.md` counts the roundings.
+//! `ARCHITECTURE.md` counts the roundings, and those of a sphere, which is not stretched and has fewer.
 
 use glam::{Mat3, Vec3};
 
@@ -102,6 +102,9 @@ pub struct Stretch {
 }
 
 impl Stretch {
+    /// Of the centre and of the box of a tile.
+    pub(crate) const ROUNDINGS: [f32; 2] = [6.0, 9.0];
+
     /// The stretch of `ellipsoid` before `camera`; `None` if it is empty.
     ///
     /// Of an ellipsoid too large to be finite, the stretch takes all of space into the unit sphere.
@@ -120,7 +123,8 @@ impl Stretch {
             });
         }
         let unscaled = triangular_stretch(camera.rotation() * ellipsoid.rotation(), semi_axes);
-        let rounding = rounding_before(camera, parts, center, longest);
+        let rounding = rounding_before(camera, center, longest, Self::ROUNDINGS)
+            + camera.rounding_of_terms(parts);
         let tilt = longest * (128.0 * math::UNIT_ROUNDOFF + 6.0 * camera.rotation_deviation());
         // The reciprocal of a subnormal number would overflow.
         let enlarged = math::round_up(shortest + (rounding + tilt), 4).max(f32::MIN_POSITIVE);
@@ -190,13 +194,18 @@ fn median(v: Vec3) -> f32 {
 }
 
 /// The length by which rounding can move a point within `reach` of `center`, in camera space, against
-/// the box of a tile that holds it: all but the first term of the module's section on rounding.
-fn rounding_before(camera: &Camera, parts: [Vec3; 2], center: Vec3, reach: f32) -> f32 {
+/// the box of a tile that holds it, if that takes so many roundings of the centre and of the box.
+fn rounding_before(
+    camera: &Camera,
+    center: Vec3,
+    reach: f32,
+    [of_center, of_box]: [f32; 2],
+) -> f32 {
     let farthest_depth = center.z.max(0.0) + reach;
     // In place of its length, which is no larger and a root more.
-    let of_center = 6.0 * center.abs().element_sum();
-    let of_box = 9.0 * camera.corner_secant() * farthest_depth;
-    math::UNIT_ROUNDOFF * (of_center + of_box) + camera.rounding_of_terms(parts)
+    let of_center = of_center * center.abs().element_sum();
+    let of_box = of_box * camera.corner_secant() * farthest_depth;
+    math::UNIT_ROUNDOFF * (of_center + of_box)
 }
 
 /// A sphere as a tile test wants it: in camera space, with nothing stretched.
@@ -218,22 +227,28 @@ pub struct CameraSphere {
 }
 
 impl CameraSphere {
+    /// Of the centre and of the box of a tile.
+    pub(crate) const ROUNDINGS: [f32; 2] = [9.0, 2.0];
+
     /// `sphere` before `camera`; `None` if it is empty.
+    #[inline]
     pub fn new(sphere: &Sphere, camera: &Camera) -> Option<Self> {
         let radius = sphere.radius();
         if radius == 0.0 {
             return None;
         }
-        let center = camera.to_camera_space(sphere.center());
-        if !(radius.is_finite() && center.is_finite()) {
+        let center = camera.seen_from_anchor(sphere.center());
+        let rounding = rounding_before(camera, center, radius, Self::ROUNDINGS);
+        let rounding = rounding + camera.rounding_of_anchor();
+        let scaling = 3.0 * camera.rotation_deviation() * radius;
+        let enlarged = math::round_up(radius + rounding + scaling, 8);
+        // Neither is it if the radius or the centre is not.
+        if !enlarged.is_finite() {
             return Some(Self {
                 center: Vec3::ZERO,
                 radius_squared: f32::INFINITY,
             });
         }
-        let rounding = rounding_before(camera, [sphere.center(), Vec3::ZERO], center, radius);
-        let scaling = 3.0 * camera.rotation_deviation() * radius;
-        let enlarged = math::round_up(radius + rounding + scaling, 8);
         Some(Self {
             center,
             radius_squared: enlarged * enlarged,

@@ -6,7 +6,10 @@ mod reference;
 use approx::assert_relative_eq;
 use proptest::prelude::*;
 use reference::Vector;
-use stochastic_light_culling::{Camera, PixelRectangle, glam::Vec3};
+use stochastic_light_culling::{Camera, CameraSphere, PixelRectangle, Sphere, glam::Vec3};
+
+/// Of `f32`.
+const UNIT_ROUNDOFF: f64 = f32::EPSILON as f64 / 2.0;
 
 const IMAGE: [u32; 2] = [1920, 1080];
 
@@ -51,6 +54,32 @@ proptest! {
         let ndc_depth = view.ndc(Vector([0.0, 0.0, depth]))[2] as f32;
         let resolution = 1e-6 * depth * depth / 0.1;
         prop_assert!((f64::from(camera.depth(ndc_depth)) - depth).abs() < 1e-4 * depth + 4.0 * resolution);
+    }
+}
+
+proptest! {
+    #![proptest_config(generators::cases(2000))]
+
+    /// Where the world's origin is far, nothing of a near sphere is lost.
+    #[test]
+    fn spheres_are_seen_to_rounding_of_their_distance(
+        view in generators::view(),
+        direction in generators::unit_vector(),
+        distance in generators::log_uniform(1e-4, 1e4),
+        far in generators::log_uniform(1.0, 1e5),
+    ) {
+        let mut view = view;
+        view.from_world.w_axis *= Vec3::splat(far as f32).extend(1.0);
+        let camera = Camera::new(view.from_world, view.projection).unwrap();
+        let eye = Vector::from(camera.to_world_space(Vec3::ZERO));
+
+        let center = (eye + direction * distance).to_f32();
+        let sphere = Sphere::new(center, 1.0).unwrap();
+        let seen = Vector::from(CameraSphere::new(&sphere, &camera).unwrap().center());
+        let exact = view.to_camera_space(Vector::from(center));
+        let of_origin = f64::from(view.from_world.w_axis.truncate().length());
+        let rounding = UNIT_ROUNDOFF * (9.0 * exact.length() + 64.0 * UNIT_ROUNDOFF * of_origin);
+        prop_assert!((seen - exact).length() <= rounding);
     }
 }
 

@@ -19,6 +19,7 @@ impl Bounded for LambertLobe {
     ///
     /// A point of the surface is l² − 2(1/3)^¾ R² cos^{3/2}θ + (1/3)^{3/2} R² from that centre, squared,
     /// which is largest at cosθ = 1/√3 and there (4/27)^½ R²: the sphere is the smallest one.
+    #[inline]
     fn unit_bound(&self) -> Sphere {
         let reach = unit_reach(self);
         Sphere::from_parts(

@@ -56,6 +56,7 @@ impl<L: Bounded> Vpl<L> {
     ///
     /// For a light that does not change, keep [`unit_bound`](Bounded::unit_bound) and place that
     /// anew each frame.
+    #[inline]
     pub fn bound(&self, roulette: &Roulette, xi: Xi) -> L::Bound {
         let scale = roulette.scale(self.flux(), xi);
         self.lobe().unit_bound().placed(self.position(), scale)

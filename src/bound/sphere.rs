@@ -40,6 +40,7 @@ impl Sphere {
 }
 
 impl Bound for Sphere {
+    #[inline]
     fn placed(self, position: Vec3, scale: f32) -> Self {
         let radius = scaled(self.radius, scale);
         if radius == 0.0 {

@@ -166,14 +166,20 @@ impl<T: BatchShape> LightBatch<T> {
     }
 
     /// Adds the lights of `chunk` that `bits` tell, all of which reach depths within `reach`.
-    pub(super) fn append(&mut self, chunk: &Chunk<T>, mut bits: u32, reach: [f32; 2]) {
+    #[inline(always)]
+    pub(super) fn append(&mut self, chunk: &Chunk<T>, bits: u32, reach: [f32; 2]) {
         if bits == ALL && self.next_lane() == 0 {
             let index = self.len / LANES;
             self.begin(index, chunk);
             self.reach[index / LANES].widen(index % LANES, reach);
             self.len += LANES;
-            return;
+        } else {
+            self.append_some(chunk, bits, reach);
         }
+    }
+
+    /// `append`, light by light.
+    fn append_some(&mut self, chunk: &Chunk<T>, mut bits: u32, reach: [f32; 2]) {
         while bits != 0 {
             let from = bits.trailing_zeros() as usize % LANES;
             bits &= bits - 1;
@@ -193,6 +199,7 @@ impl<T: BatchShape> LightBatch<T> {
     }
 
     /// Makes `chunk` the one at `index`, which is at most the end.
+    #[inline(always)]
     fn begin(&mut self, index: usize, chunk: &Chunk<T>) {
         set_or_push(&mut self.chunks, index, chunk);
         if index % LANES == 0 {
@@ -247,6 +254,7 @@ impl<T: BatchShape> Extend<(u32, T)> for LightBatch<T> {
 }
 
 /// Puts `value` at `index`, which is at most the end.
+#[inline(always)]
 fn set_or_push<V: Copy>(values: &mut Vec<V>, index: usize, value: &V) {
     if let Some(place) = values.get_mut(index) {
         *place = *value;

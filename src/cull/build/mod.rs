@@ -170,13 +170,19 @@ impl BatchBuilder {
         lanes: Range<usize>,
         batch: &mut LightBatch<T::Shape>,
     ) {
-        dispatch!(self.level, simd => shape(simd, group, &lanes, &self.frame));
-        group.append_to(batch, lanes.end);
+        dispatch!(self.level, simd => shape(simd, group, &lanes, &self.frame, batch));
     }
 }
 
 /// Makes shapes of the lights in these lanes.
 #[inline(always)]
-fn shape<S: Simd, T: Source>(simd: S, group: &mut Group<T>, lanes: &Range<usize>, frame: &Frame) {
+fn shape<S: Simd, T: Source>(
+    simd: S,
+    group: &mut Group<T>,
+    lanes: &Range<usize>,
+    frame: &Frame,
+    batch: &mut LightBatch<T::Shape>,
+) {
     group.shape(simd, lanes, frame);
+    group.append_to(batch, lanes.end);
 }

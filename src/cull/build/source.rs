@@ -156,6 +156,7 @@ impl<T: Source> Group<T> {
     }
 
     /// Adds the shapes that were made of the lanes before `end` to `batch`.
+    #[inline(always)]
     pub fn append_to(&self, batch: &mut LightBatch<T::Shape>, end: usize) {
         for made in &self.made[..end.div_ceil(LANES)] {
             batch.append(&made.chunk, made.shaped, made.reach);

@@ -12,7 +12,7 @@ impl Source for LambertLobe {
     type Light = Vpl<Self>;
     type Given = Xi;
     type Shape = CameraSphere;
-    /// The position and Φ, n and √ρ.
+    /// The position and Φ, √ρ and n.
     type Fours<T: Lane> = [T; 2];
     type Rest = ();
 
@@ -22,10 +22,10 @@ impl Source for LambertLobe {
 
     #[inline]
     fn numbers(light: &Self::Light, _: Xi) -> [[f32; 4]; 2] {
-        let lobe = light.lobe();
+        let (lobe, n) = (light.lobe(), light.lobe().normal());
         [
             four(light.position(), light.flux()),
-            four(*lobe.normal(), lobe.albedo_root()),
+            [lobe.albedo_root(), n.x, n.y, n.z],
         ]
     }
 
@@ -51,7 +51,7 @@ impl Source for LambertLobe {
         _: &[()],
         frame: &Frame,
     ) -> (OfShape<S, CameraSphere>, S::mask32s) {
-        let [[p_x, p_y, p_z, flux], [n_x, n_y, n_z, root]] = *numbers;
+        let [[p_x, p_y, p_z, flux], [root, n_x, n_y, n_z]] = *numbers;
         let reach = root * Self::ROOT_OF_ONE_OVER_PI;
         let unit = Spheres {
             center: Vectors::<S>::new(n_x, n_y, n_z) * (reach * Self::CENTER),

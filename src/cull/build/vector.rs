@@ -107,6 +107,15 @@ impl<S: Simd> Sub for Vectors<S> {
     }
 }
 
+impl<S: Simd> Sub<Vec3> for Vectors<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Vec3) -> Self {
+        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
+    }
+}
+
 impl<S: Simd> Mul<S::f32s> for Vectors<S> {
     type Output = Self;
 

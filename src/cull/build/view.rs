@@ -7,7 +7,7 @@ use glam::{Mat3, Vec3};
 use super::vector::{Vectors, dot_with, product, round_up};
 use crate::cull::lanes::{Ends, splat};
 use crate::cull::shape::{UNIT_REACH, outward_of};
-use crate::{Camera, math};
+use crate::{Camera, CameraSphere, Stretch, math};
 
 /// A camera, with what is the same for all lights.
 #[derive(Clone, Copy, Debug)]
@@ -16,8 +16,12 @@ pub(super) struct View {
     rows: [[f64; 3]; 3],
     translation: [f64; 3],
     translation_abs: Vec3,
+    anchor: [Vec3; 2],
+    rounding_of_anchor: f32,
+    /// Roundings of the centre and of the box, the latter times the secant.
+    of_ellipsoid: [f32; 2],
+    of_sphere: [f32; 2],
     /// Shares of lengths.
-    of_box: f32,
     of_tilt: f32,
     of_scaling: f32,
 }
@@ -27,12 +31,16 @@ impl View {
         let rotation = camera.rotation();
         let rows = [0, 1, 2].map(|i| rotation.row(i));
         let deviation = camera.rotation_deviation();
+        let before = |[center, of_box]: [f32; 2]| [center, of_box * camera.corner_secant()];
         Self {
             rotation,
             rows: rows.map(|row| row.to_array().map(f64::from)),
             translation: camera.translation().to_array().map(f64::from),
             translation_abs: camera.translation().abs(),
-            of_box: 9.0 * camera.corner_secant(),
+            anchor: camera.anchor(),
+            rounding_of_anchor: camera.rounding_of_anchor(),
+            of_ellipsoid: before(Stretch::ROUNDINGS),
+            of_sphere: before(CameraSphere::ROUNDINGS),
             of_tilt: 128.0 * math::UNIT_ROUNDOFF + 6.0 * deviation,
             of_scaling: 3.0 * deviation,
         }
@@ -50,32 +58,30 @@ impl View {
         Vectors::from_array(center)
     }
 
-    /// [`Camera::to_camera_space`].
+    /// [`Camera::seen_from_anchor`].
     #[inline(always)]
-    fn seen<S: Simd>(&self, point: Vectors<S>) -> Vectors<S> {
-        let wide = point.widened();
-        let mut seen = point.to_array();
-        for (i, coordinate) in seen.iter_mut().enumerate() {
-            let turned = dot_with(self.rows[i], wide);
-            *coordinate = (turned + self.translation[i]).narrowed();
-        }
-        Vectors::from_array(seen)
+    fn seen_from_anchor<S: Simd>(&self, point: Vectors<S>) -> Vectors<S> {
+        let [anchor, anchor_seen] = self.anchor;
+        product(self.rotation, point - anchor) + anchor_seen
     }
 
-    /// `rounding_before` of `stretch`; `terms` is the sum of the parts' absolute values.
+    /// [`Camera::rounding_of_terms`]; `terms` is the sum of the parts' absolute values.
     #[inline(always)]
-    fn rounding_before<S: Simd>(
-        &self,
-        terms: Vectors<S>,
-        center: Vectors<S>,
-        reach: S::f32s,
-    ) -> S::f32s {
-        let farthest_depth = center.z.max(0.0) + reach;
-        let of_center = center.abs().element_sum() * 6.0;
-        let of_box = farthest_depth * self.of_box;
-        let of_terms = (terms + self.translation_abs).element_sum() * Camera::ROUNDINGS_OF_TERMS;
-        (of_center + of_box) * math::UNIT_ROUNDOFF + of_terms
+    fn rounding_of_terms<S: Simd>(&self, terms: Vectors<S>) -> S::f32s {
+        (terms + self.translation_abs).element_sum() * Camera::ROUNDINGS_OF_TERMS
     }
+}
+
+/// `rounding_before` of `stretch`; `of_box` includes the secant.
+#[inline(always)]
+fn rounding_before<S: Simd>(
+    center: Vectors<S>,
+    reach: S::f32s,
+    [of_center, of_box]: [f32; 2],
+) -> S::f32s {
+    let farthest_depth = center.z.max(0.0) + reach;
+    let of_center = center.abs().element_sum() * of_center;
+    (of_center + farthest_depth * of_box) * math::UNIT_ROUNDOFF
 }
 
 /// The fields of the shape in each lane, and the depths that it reaches.
@@ -115,7 +121,8 @@ impl<S: Simd> Ellipsoids<S> {
         ];
         let [xx, xy, xz, yx, yy, yz, m] = triangular_stretch(simd, axes, semi_axes);
         let terms = parts[0].abs() + parts[1].abs();
-        let rounding = view.rounding_before(terms, center, longest);
+        let rounding = rounding_before::<S>(center, longest, view.of_ellipsoid)
+            + view.rounding_of_terms(terms);
         let tilt = longest * view.of_tilt;
         let enlarged = round_up::<S>(shortest + (rounding + tilt), 4).max(f32::MIN_POSITIVE);
         let factor = S::f32s::splat(simd, 1.0) / enlarged;
@@ -202,11 +209,12 @@ impl<S: Simd> Spheres<S> {
     /// The spheres before the camera, none of which is of an empty sphere.
     #[inline(always)]
     pub fn before(self, simd: S, view: &View) -> Seen<S, [S::f32s; 4]> {
-        let center = view.seen(self.center);
-        let finite = self.radius.is_finite() & center.is_finite();
-        let rounding = view.rounding_before(self.center.abs(), center, self.radius);
+        let center = view.seen_from_anchor(self.center);
+        let rounding = rounding_before::<S>(center, self.radius, view.of_sphere);
+        let rounding = rounding + view.rounding_of_anchor;
         let scaling = self.radius * view.of_scaling;
         let enlarged = round_up::<S>(self.radius + rounding + scaling, 8);
+        let finite = enlarged.is_finite();
         let squared = enlarged * enlarged;
         let [zero, infinite] = splat(simd, [0.0, f32::INFINITY]);
         let radius = round_up::<S>(finite.select(enlarged, infinite), 4);
