@@ -2,13 +2,14 @@
 
 use alloc::vec::Vec;
 
-use fearless_simd::{Simd, SimdBase, SimdMask};
+use fearless_simd::Simd;
 
 use super::batch::Chunk;
 use super::exact::list_exactly;
-use super::filter::{filter, in_depth};
-use super::lanes::{LANES, Lanes, load, parts, splat, store};
-use super::shape::{BatchShape, InLanes, TileLanes};
+use super::filter::filter;
+use super::lanes::{parts, splat, store};
+use super::list::{Row, list};
+use super::shape::{BatchShape, TileLanes};
 use super::tile_depths::{Area, NONE};
 use super::{CullCounters, LightBatch, LightLists, TileDepths};
 
@@ -24,10 +25,6 @@ pub(super) struct Scratch<T: BatchShape> {
     pub exact: bool,
     pub counters: CullCounters,
 }
-
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-struct Row<T: InLanes>(T::Row<Lanes>);
 
 impl<T: BatchShape> Scratch<T> {
     pub fn new() -> Self {
@@ -137,7 +134,7 @@ impl<T: BatchShape> Walk<'_, T> {
     fn tiles<S: Simd>(&mut self, simd: S, lights: &LightBatch<T>, area: Area) {
         let chunks = lights.chunks();
         if self.rows.len() < chunks.len() {
-            self.rows.resize(chunks.len(), Row(T::NO_ROW));
+            self.rows.resize(chunks.len(), Row::NONE);
         }
         let rows = &mut self.rows[..chunks.len()];
         for y in area.min[1]..area.max[1] {
@@ -161,7 +158,7 @@ impl<T: BatchShape> Walk<'_, T> {
                     let start = self.lists.len();
                     if self.exact {
                         let sides = [across, down, *depths];
-                        let tested = list_exactly(simd, lights, sides, self.lists);
+                        let tested = list_exactly(simd, lights, rows, sides, self.lists);
                         self.counters.tile_tests += tested.lights;
                         self.counters.rejected_exactly += tested.rejected;
                     } else {
@@ -173,43 +170,4 @@ impl<T: BatchShape> Walk<'_, T> {
             }
         }
     }
-}
-
-/// Appends the lights that may touch `tile` to `lists`; gives the number of tests.
-#[inline(always)]
-fn list<S: Simd, T: BatchShape>(
-    simd: S,
-    lights: &LightBatch<T>,
-    rows: &[Row<T>],
-    tile: &TileLanes<S>,
-    lists: &mut LightLists,
-) -> u64 {
-    let chunks = lights.chunks();
-    // Each write is of a whole vector, of which the next one keeps only what counts.
-    let numbers = lists.room_for((chunks.len() + 1) * LANES);
-    let (mut end, mut tested) = (0, 0);
-    let groups = chunks.chunks(LANES).zip(rows.chunks(LANES));
-    for ((chunks, rows), reach) in groups.zip(lights.reach()) {
-        let mut candidates = in_depth(simd, reach, tile);
-        tested += candidates.count_ones();
-        while candidates != 0 {
-            let index = candidates.trailing_zeros() as usize;
-            candidates &= candidates - 1;
-            let (chunk, row) = (&chunks[index], &rows[index].0);
-            for part in 0..parts::<S>() {
-                let mut shared = T::row_of(S::f32s::splat(simd, 0.0));
-                for (vector, lanes) in shared.as_mut().iter_mut().zip(row.as_ref()) {
-                    *vector = load(simd, lanes, part);
-                }
-                let touching = !T::misses(simd, &chunk.fields, part, &shared, tile);
-                // Without asking first whether there are any: it would be guessed wrong too often.
-                let of_chunk = &chunk.numbers[part * S::u32s::LEN..][..S::u32s::LEN];
-                let chosen = S::u32s::from_slice(simd, of_chunk).compress(touching);
-                chosen.store_slice(&mut numbers[end..end + S::u32s::LEN]);
-                end += touching.to_bitmask().count_ones() as usize;
-            }
-        }
-    }
-    lists.take(end);
-    u64::from(tested) * LANES as u64
 }

@@ -1,12 +1,14 @@
 //! The lists of a culler that tests exactly.
 
-use fearless_simd::Simd;
+use fearless_simd::{Simd, SimdBase, SimdMask};
 
 use super::batch::Chunk;
-use super::filter::{in_depth, touching};
-use super::lanes::LANES;
+use super::lanes::{LANES, load, parts};
+use super::list::{Row, find};
 use super::shape::{BatchShape, TileLanes};
+use super::wide::Wide;
 use super::{LightBatch, LightLists};
+use crate::tile::Frustum;
 
 /// How many lights were tested, and how many of those that pass the box test touch nothing.
 pub(super) struct Tested {
@@ -16,62 +18,127 @@ pub(super) struct Tested {
 
 /// Appends the lights that touch the tile with these `sides`, exactly, to `lists`.
 ///
-/// The box test is done in lanes, as everywhere, and the exact one light by light. A function of its own,
-/// so that culling without it is compiled as if it were not there.
+/// A function of its own, so that culling without it is compiled as if it were not there.
 #[inline(never)]
 pub(super) fn list_exactly<S: Simd, T: BatchShape>(
     simd: S,
     lights: &LightBatch<T>,
+    rows: &[Row<T>],
     sides: [[f32; 2]; 3],
     lists: &mut LightLists,
 ) -> Tested {
     simd.vectorize(
         #[inline(always)]
-        || list(simd, lights, sides, lists),
+        || {
+            let places = lists.room_for((lights.chunks().len() + 1) * LANES);
+            let place = |chunk: usize, _: &Chunk<T>, part: usize| {
+                let first = (chunk * LANES + part * S::u32s::LEN) as u32;
+                S::u32s::from_slice(simd, &FIRST_PLACES[..S::u32s::LEN]) + first
+            };
+            let tile = TileLanes::new(simd, sides[0], sides[1], sides[2]);
+            let [passed, tested] = find(simd, lights, rows, &tile, place, places);
+            let listed = keep(simd, lights.chunks(), sides, places, passed);
+            lists.take(listed);
+            Tested {
+                lights: tested as u64,
+                rejected: (passed - listed) as u64,
+            }
+        },
     )
 }
 
+const FIRST_PLACES: [u32; LANES] = {
+    let mut places = [0; LANES];
+    let mut place = 0;
+    while place < LANES {
+        places[place] = place as u32;
+        place += 1;
+    }
+    places
+};
+
+/// Puts the numbers of those lights that touch the tile in place of the first `count` of `places`; gives
+/// how many these are.
 #[inline(always)]
-fn list<S: Simd, T: BatchShape>(
+fn keep<S: Simd, T: BatchShape>(
     simd: S,
-    lights: &LightBatch<T>,
+    chunks: &[Chunk<T>],
     sides: [[f32; 2]; 3],
-    lists: &mut LightLists,
-) -> Tested {
-    let [across, down, depths] = sides;
-    let tile = TileLanes::new(simd, across, down, depths);
-    let chunks = lights.chunks();
-    let numbers = lists.room_for((chunks.len() + 1) * LANES);
-    let (mut end, mut tested, mut passed) = (0, 0, 0);
-    for (chunks, reach) in chunks.chunks(LANES).zip(lights.reach()) {
-        let mut candidates = in_depth(simd, reach, &tile);
-        tested += candidates.count_ones();
-        while candidates != 0 {
-            let chunk = &chunks[candidates.trailing_zeros() as usize % LANES];
-            candidates &= candidates - 1;
-            let mut bits = touching(simd, chunk, &tile);
-            passed += bits.count_ones();
-            while bits != 0 {
-                let lane = bits.trailing_zeros() as usize % LANES;
-                bits &= bits - 1;
-                // Written in any case: the next one keeps only what counts.
-                numbers[end] = chunk.numbers[lane];
-                end += usize::from(meets(chunk, lane, sides));
-            }
+    places: &mut [u32],
+    count: usize,
+) -> usize {
+    let (mut side_by_side, mut end) = (Chunk::NOWHERE, 0);
+    for start in (0..count).step_by(LANES) {
+        let lanes = LANES.min(count - start);
+        for (lane, place) in places[start..][..lanes].iter().enumerate() {
+            copy_light(chunks, *place as usize, &mut side_by_side, lane);
+        }
+        for part in 0..parts::<S>() {
+            let wanted = ((1_u64 << lanes) - 1) >> (part * S::u32s::LEN);
+            let touching = touching(simd, &side_by_side, part, wanted as u32, sides);
+            let of_part = &side_by_side.numbers[part * S::u32s::LEN..][..S::u32s::LEN];
+            let chosen = S::mask32s::from_bitmask(simd, touching.into());
+            let chosen = S::u32s::from_slice(simd, of_part).compress(chosen);
+            // Never beyond the places that were read.
+            chosen.store_slice(&mut places[end..end + S::u32s::LEN]);
+            end += touching.count_ones() as usize;
         }
     }
-    lists.take(end);
-    Tested {
-        lights: u64::from(tested) * LANES as u64,
-        rejected: u64::from(passed) - end as u64,
+    end
+}
+
+#[inline(always)]
+fn copy_light<T: BatchShape>(chunks: &[Chunk<T>], place: usize, to: &mut Chunk<T>, lane: usize) {
+    let (from, from_lane) = (&chunks[place / LANES], place % LANES);
+    let fields = from.fields.as_ref().iter();
+    for (field, to) in fields.zip(to.fields.as_mut()) {
+        to[lane] = field[from_lane];
     }
+    to.numbers[lane] = from.numbers[from_lane];
+}
+
+/// Which of the `wanted` lights touch the tile, as bits.
+#[inline(always)]
+fn touching<S: Simd, T: BatchShape>(
+    simd: S,
+    chunk: &Chunk<T>,
+    part: usize,
+    wanted: u32,
+    sides: [[f32; 2]; 3],
+) -> u32 {
+    let mut fields = T::fields_of(Wide::splat(simd, 0.0));
+    for (field, lanes) in fields.as_mut().iter_mut().zip(chunk.fields.as_ref()) {
+        *field = Wide::new(load(simd, lanes, part));
+    }
+    let wide = |[first, last]: [f32; 2]| {
+        [
+            Wide::splat(simd, first.into()),
+            Wide::splat(simd, last.into()),
+        ]
+    };
+    let frustum = Frustum::new(
+        T::image(&fields),
+        [wide(sides[0]), wide(sides[1]), wide(sides[2])],
+    );
+    let verdict = frustum.first_verdict();
+    let apart = verdict.is_apart | frustum.is_out_of_reach();
+    let mut touching = (!(apart | verdict.is_open)).to_bitmask() as u32 & wanted;
+    let mut open = (verdict.is_open & !apart).to_bitmask() as u32 & wanted;
+    while open != 0 {
+        let lane = open.trailing_zeros();
+        open &= open - 1;
+        let meets = meets(chunk, part * S::u32s::LEN + lane as usize, sides);
+        touching |= u32::from(meets) << lane;
+    }
+    touching
 }
 
 #[inline(always)]
 fn meets<T: BatchShape>(chunk: &Chunk<T>, lane: usize, sides: [[f32; 2]; 3]) -> bool {
     let mut fields = T::fields_of(0.0);
     for (field, lanes) in fields.as_mut().iter_mut().zip(chunk.fields.as_ref()) {
-        *field = lanes[lane];
+        *field = f64::from(lanes[lane]);
     }
-    T::meets(&fields, sides)
+    let sides = sides.map(|side| side.map(f64::from));
+    Frustum::new(T::image(&fields), sides).meets_ball()
 }

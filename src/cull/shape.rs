@@ -6,7 +6,7 @@ use glam::{Mat3, Vec3};
 use super::lanes::{
     self, Ends, LANES, Lanes, apart, apart_at_depths, length_squared, load, scaled, shifted,
 };
-use crate::tile::Frustum;
+use crate::tile::{Image, Number};
 use crate::{CameraSphere, Stretch, TileTest, math};
 
 /// What a [`LightBatch`](super::LightBatch) can hold: [`Stretch`] and [`CameraSphere`].
@@ -57,9 +57,8 @@ pub trait InLanes: Copy {
         tile: &TileLanes<S>,
     ) -> S::mask32s;
 
-    /// Whether the light with these `fields`, which passes the box test, touches the tile with these
-    /// `sides` across, down and in depth.
-    fn meets(fields: &Self::Fields<f32>, sides: [[f32; 2]; 3]) -> bool;
+    /// What the exact test takes.
+    fn image<N: Number>(fields: &Self::Fields<N>) -> Image<N>;
 }
 
 /// A tile, the same in each lane.
@@ -158,14 +157,17 @@ impl InLanes for Stretch {
     }
 
     #[inline(always)]
-    fn meets(fields: &[f32; 10], sides: [[f32; 2]; 3]) -> bool {
+    fn image<N: Number>(fields: &[N; 10]) -> Image<N> {
         let [m_11, m_12, m_13, m_21, m_22, m_23, m, x, y, z] = *fields;
-        let axes = [
-            Vec3::new(m_11, m_21, 0.0),
-            Vec3::new(m_12, m_22, 0.0),
-            Vec3::new(m_13, m_23, m),
-        ];
-        Frustum::new(axes, sides, Vec3::new(x, y, z), [1.0; 2]).meets_ball()
+        let one = m.constant(1.0);
+        Image {
+            a: [m_11, m_21],
+            b: [m_12, m_22],
+            d: [m_13, m_23, m],
+            center: [x, y, z],
+            radius: one,
+            radius_squared: one,
+        }
     }
 }
 
@@ -221,9 +223,9 @@ impl InLanes for CameraSphere {
     }
 
     #[inline(always)]
-    fn meets(fields: &[f32; 4], sides: [[f32; 2]; 3]) -> bool {
+    fn image<N: Number>(fields: &[N; 4]) -> Image<N> {
         let [x, y, z, radius_squared] = *fields;
-        Frustum::around_sphere(Vec3::new(x, y, z), radius_squared, sides).meets_ball()
+        Image::of_sphere([x, y, z], radius_squared)
     }
 }
 

@@ -33,84 +33,146 @@
     reason = "so that a culler has it compiled for its own processor"
 )]
 
-use glam::Vec3;
-
-use crate::math;
+use super::number::Number;
 
 /// More than halving an interval of `f64` numbers takes. Nearly all lights take one step or two, and one
 /// that is not decided at last is kept.
 const MOST_STEPS: u32 = 64;
 
-/// A ball, and a tile's image.
+/// A light as this test takes it: the columns of M, whose third row is (0, 0, m), and the ball.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Frustum {
-    center: [f64; 3],
-    radius_squared: f64,
+pub struct Image<N> {
     /// a and b, which have no depth, and d.
-    a: [f64; 2],
-    b: [f64; 2],
-    d: [f64; 3],
-    slopes: [Interval; 2],
-    /// Of the tile, as far as the ball reaches.
-    depths: Interval,
-    /// Of c.
-    depth: f64,
+    pub a: [N; 2],
+    pub b: [N; 2],
+    pub d: [N; 3],
+    pub center: [N; 3],
+    /// Not less than the root of the next.
+    pub radius: N,
+    pub radius_squared: N,
 }
 
-impl Frustum {
-    /// The image of the tile with these slopes across and down, and these depths, under the matrix with
-    /// columns `axes`, whose third row is (0, 0, m); and the ball around `center`.
+impl<N: Number> Image<N> {
+    /// A ball with nothing stretched.
     #[inline(always)]
-    pub fn new(
-        axes: [Vec3; 3],
-        [across, down, depths]: [[f32; 2]; 3],
-        center: Vec3,
-        [radius, radius_squared]: [f32; 2],
-    ) -> Self {
-        let wide = |v: Vec3| v.to_array().map(f64::from);
-        let ([[a0, a1, _], [b0, b1, _], d], center) = (axes.map(wide), wide(center));
-        let per_m = 1.0 / d[2];
-        let (depth, reach) = (center[2] * per_m, f64::from(radius) * per_m);
-        let [near, far] = depths.map(f64::from);
+    pub fn of_sphere(center: [N; 3], radius_squared: N) -> Self {
+        let (zero, one) = (radius_squared.constant(0.0), radius_squared.constant(1.0));
         Self {
+            a: [one, zero],
+            b: [zero, one],
+            d: [zero, zero, one],
             center,
-            radius_squared: radius_squared.into(),
-            a: [a0, a1],
-            b: [b0, b1],
-            d,
-            slopes: [across, down].map(|[min, max]| Interval::new(min.into(), max.into())),
-            depths: Interval::new(greater(depth - reach, near), lesser(depth + reach, far)),
+            radius: radius_squared.sqrt().times(1.0 + 4.0 * f64::EPSILON),
+            radius_squared,
+        }
+    }
+}
+
+/// A ball, and a tile's image.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frustum<N> {
+    light: Image<N>,
+    slopes: [Interval<N>; 2],
+    /// Of the tile, as far as the ball reaches.
+    depths: Interval<N>,
+    /// Of c.
+    depth: N,
+}
+
+/// What is known once a point of the tile was looked at.
+pub(crate) struct Verdict<N: Number> {
+    /// Whether neither a point in the ball nor a plane between both has been found.
+    pub is_open: N::Truth,
+    /// Whether a plane has.
+    pub is_apart: N::Truth,
+}
+
+impl<N: Number> Frustum<N> {
+    /// The image of the tile with these slopes across and down, and these depths, beside that of `light`.
+    #[inline(always)]
+    pub fn new(light: Image<N>, [across, down, [near, far]]: [[N; 2]; 3]) -> Self {
+        let per_m = near.constant(1.0) / light.d[2];
+        let (depth, reach) = (light.center[2] * per_m, light.radius * per_m);
+        Self {
+            light,
+            slopes: [Interval::new(across), Interval::new(down)],
+            depths: Interval::new([(depth - reach).greater(near), (depth + reach).lesser(far)]),
             depth,
         }
     }
 
-    /// The tile itself, and a ball.
+    /// Whether the ball reaches no depth of the tile.
     #[inline(always)]
-    pub fn around_sphere(center: Vec3, radius_squared: f32, sides: [[f32; 2]; 3]) -> Self {
-        let radius = math::round_up(math::sqrt(radius_squared), 4);
-        Self::new(Vec3::AXES, sides, center, [radius, radius_squared])
+    pub fn is_out_of_reach(&self) -> N::Truth {
+        self.depths.min.is_greater(self.depths.max)
     }
 
+    /// What the nearest point at the depth of c tells, or at the nearest that the tile has.
+    #[cfg(feature = "cull")]
+    #[inline(always)]
+    pub fn first_verdict(&self) -> Verdict<N> {
+        let nearest = Plane::new(self).nearest(self, self.first_depth());
+        self.seen_along(nearest.way).verdict
+    }
+
+    #[inline(always)]
+    fn first_depth(&self) -> N {
+        self.depths.clamped(self.depth)
+    }
+
+    /// What a plane at right angles to R tells, and the point that R leads to.
+    #[inline(always)]
+    fn seen_along(&self, [r0, r1, r2]: [N; 3]) -> Seen<N> {
+        let Image { a, b, d, .. } = self.light;
+        let ([x, y], [c0, c1, c2]) = (self.slopes, self.light.center);
+        let middle = [
+            a[0] * x.middle + b[0] * y.middle + d[0],
+            a[1] * x.middle + b[1] * y.middle + d[1],
+        ];
+        let along_sides = [r0 * a[0] + r1 * a[1], r0 * b[0] + r1 * b[1]];
+        let slope = (r0 * middle[0] + r1 * middle[1] + r2 * d[2])
+            - (along_sides[0].abs() * x.half + along_sides[1].abs() * y.half);
+        let z = self.depths;
+        // How far beyond c the tile begins, times ‖R‖.
+        let begins = slope * z.middle - slope.abs() * z.half;
+        let apart = begins - (r0 * c0 + r1 * c1 + r2 * c2);
+        let squared = r0 * r0 + r1 * r1 + r2 * r2;
+        let beyond = apart * apart.abs() - squared * self.light.radius_squared;
+        let within = self.light.radius_squared - squared;
+        let zero = squared.constant(0.0);
+        Seen {
+            slope,
+            verdict: Verdict {
+                // Both in one: which of them it is could not be guessed. No NaN rejects.
+                is_open: zero.is_greater(within.greater(beyond)),
+                is_apart: beyond.is_greater(zero),
+            },
+        }
+    }
+}
+
+/// What a way R from c tells of the tile.
+struct Seen<N: Number> {
+    /// s
+    slope: N,
+    verdict: Verdict<N>,
+}
+
+impl Frustum<f64> {
     /// Whether the ball touches the tile; true of what is not finite.
     #[inline(always)]
     pub fn meets_ball(&self) -> bool {
-        if self.depths.min > self.depths.max {
+        if self.is_out_of_reach() {
             return false;
         }
         let plane = Plane::new(self);
         let mut tried = [f64::NEG_INFINITY, f64::INFINITY];
-        let mut z = self.depths.clamped(self.depth);
+        let mut z = self.first_depth();
         for _ in 0..MOST_STEPS {
             let nearest = plane.nearest(self, z);
-            let [squared, slope, apart] = self.seen_along(nearest.way);
-            let beyond = apart * apart.abs() - squared * self.radius_squared;
-            // Both in one: which of them it is could not be guessed. No NaN rejects.
-            let (is_open, is_apart) = (
-                greater(self.radius_squared - squared, beyond) < 0.0,
-                beyond > 0.0,
-            );
-            if !is_open {
-                return !is_apart;
+            let Seen { slope, verdict } = self.seen_along(nearest.way);
+            if !verdict.is_open {
+                return !verdict.is_apart;
             }
             // The least is on the side to which g falls.
             if slope > 0.0 {
@@ -136,60 +198,48 @@ impl Frustum {
         }
     }
 
-    /// Of R: ‖R‖², s, and how far beyond c along it the tile begins, times ‖R‖.
-    #[inline(always)]
-    fn seen_along(&self, [r0, r1, r2]: [f64; 3]) -> [f64; 3] {
-        let ([a0, a1], [b0, b1], [d0, d1, m]) = (self.a, self.b, self.d);
-        let ([x, y], [c0, c1, c2]) = (self.slopes, self.center);
-        let middle = [
-            a0 * x.middle + b0 * y.middle + d0,
-            a1 * x.middle + b1 * y.middle + d1,
-        ];
-        let along_sides = [r0 * a0 + r1 * a1, r0 * b0 + r1 * b1];
-        let s = (r0 * middle[0] + r1 * middle[1] + r2 * m)
-            - (along_sides[0].abs() * x.half + along_sides[1].abs() * y.half);
-        let z = self.depths;
-        let begins = s * z.middle - s.abs() * z.half;
-        let squared = r0 * r0 + r1 * r1 + r2 * r2;
-        [squared, s, begins - (r0 * c0 + r1 * c1 + r2 * c2)]
-    }
-
     /// Half the second derivative of g at `z`, on the side of a parabola's end that `nearest` is on.
     #[inline(always)]
-    fn curvature(&self, nearest: &Nearest, z: f64) -> f64 {
+    fn curvature(&self, nearest: &Nearest<f64>, z: f64) -> f64 {
         let [r0, r1, _] = nearest.way;
-        let w = [(r0 + self.center[0]) / z, (r1 + self.center[1]) / z];
+        let w = [
+            (r0 + self.light.center[0]) / z,
+            (r1 + self.light.center[1]) / z,
+        ];
         let beside = |[e0, e1]: [f64; 2]| {
             let area = w[0] * e1 - w[1] * e0;
             area * area / (e0 * e0 + e1 * e1)
         };
-        let in_plane = match nearest.slides {
+        let slides = [nearest.u, nearest.v].map(|[nearest, free]| nearest == free);
+        let in_plane = match slides {
             [true, true] => 0.0,
-            [true, false] => beside(self.a),
-            [false, true] => beside(self.b),
+            [true, false] => beside(self.light.a),
+            [false, true] => beside(self.light.b),
             [false, false] => w[0] * w[0] + w[1] * w[1],
         };
-        in_plane + self.d[2] * self.d[2]
+        in_plane + self.light.d[2] * self.light.d[2]
     }
 }
 
 /// Coordinates u and v along a and b.
-struct Plane {
+struct Plane<N> {
     /// u* = `foot[0][0]` − z `foot[0][1]`, and v*.
-    foot: [[f64; 2]; 2],
+    foot: [[N; 2]; 2],
     /// By how much the nearest u grows as v falls, and v as u falls.
-    u_per_v: f64,
-    v_per_u: f64,
+    u_per_v: N,
+    v_per_u: N,
 }
 
-impl Plane {
+impl<N: Number> Plane<N> {
     #[inline(always)]
-    fn new(frustum: &Frustum) -> Self {
-        let (a, b) = (frustum.a, frustum.b);
-        let ([d0, d1, _], [c0, c1, _]) = (frustum.d, frustum.center);
-        let area = |e: [f64; 2], f: [f64; 2]| e[0] * f[1] - e[1] * f[0];
-        let dot = |e: [f64; 2], f: [f64; 2]| e[0] * f[0] + e[1] * f[1];
-        let per_area = 1.0 / area(a, b);
+    fn new(frustum: &Frustum<N>) -> Self {
+        let Image {
+            a, b, d, center, ..
+        } = frustum.light;
+        let ([d0, d1, _], [c0, c1, _]) = (d, center);
+        let area = |e: [N; 2], f: [N; 2]| e[0] * f[1] - e[1] * f[0];
+        let dot = |e: [N; 2], f: [N; 2]| e[0] * f[0] + e[1] * f[1];
+        let per_area = d0.constant(1.0) / area(a, b);
         let (ab, aa, bb) = (dot(a, b), dot(a, a), dot(b, b));
         let (c, d) = ([c0, c1], [d0, d1]);
         Self {
@@ -204,74 +254,74 @@ impl Plane {
 
     /// The point of the section at depth `z` that is nearest to c.
     #[inline(always)]
-    fn nearest(&self, frustum: &Frustum, z: f64) -> Nearest {
-        let [u_foot, v_foot] = self.foot.map(|[at_eye, per_depth]| at_eye - per_depth * z);
-        let [us, vs] = frustum
-            .slopes
-            .map(|slopes| [slopes.min * z, slopes.max * z]);
+    fn nearest(&self, frustum: &Frustum<N>, z: N) -> Nearest<N> {
+        // Arrays are not mapped here: the compiler does not follow vectors through that.
+        let at_depth = |[at_eye, per_depth]: [N; 2]| at_eye - per_depth * z;
+        let (u_foot, v_foot) = (at_depth(self.foot[0]), at_depth(self.foot[1]));
+        let [across, down] = frustum.slopes;
+        let (us, vs) = (
+            [across.min * z, across.max * z],
+            [down.min * z, down.max * z],
+        );
         let u_free = u_foot + self.u_per_v * (v_foot - clamped(v_foot, vs));
         let u = clamped(u_free, us);
         let v_free = v_foot + self.v_per_u * (u_foot - u);
         let v = clamped(v_free, vs);
-        let ([a0, a1], [b0, b1]) = (frustum.a, frustum.b);
+        let Image {
+            a: [a0, a1],
+            b: [b0, b1],
+            d,
+            center,
+            ..
+        } = frustum.light;
         let (u_apart, v_apart) = (u - u_foot, v - v_foot);
         Nearest {
             way: [
                 u_apart * a0 + v_apart * b0,
                 u_apart * a1 + v_apart * b1,
-                frustum.d[2] * z - frustum.center[2],
+                d[2] * z - center[2],
             ],
-            slides: [u == u_free, v == v_free],
+            u: [u, u_free],
+            v: [v, v_free],
         }
     }
 }
 
 /// The point of a section that is nearest to c.
-struct Nearest {
+struct Nearest<N> {
     /// R, from c.
-    way: [f64; 3],
-    /// Whether it is at no end of u, and of v.
-    slides: [bool; 2],
+    way: [N; 3],
+    /// u and v, and where they would be if their intervals had no ends.
+    u: [N; 2],
+    v: [N; 2],
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Interval {
-    min: f64,
-    max: f64,
-    middle: f64,
-    half: f64,
+struct Interval<N> {
+    min: N,
+    max: N,
+    middle: N,
+    half: N,
 }
 
-impl Interval {
+impl<N: Number> Interval<N> {
     #[inline(always)]
-    fn new(min: f64, max: f64) -> Self {
+    fn new([min, max]: [N; 2]) -> Self {
         Self {
             min,
             max,
-            middle: 0.5 * (min + max),
-            half: 0.5 * (max - min),
+            middle: (min + max).times(0.5),
+            half: (max - min).times(0.5),
         }
     }
 
     #[inline(always)]
-    fn clamped(&self, x: f64) -> f64 {
+    fn clamped(&self, x: N) -> N {
         clamped(x, [self.min, self.max])
     }
 }
 
 #[inline(always)]
-fn clamped(x: f64, [min, max]: [f64; 2]) -> f64 {
-    lesser(greater(x, min), max)
-}
-
-/// The greater of both, `otherwise` where x is NaN: one instruction, unlike `f64::max`.
-#[inline(always)]
-fn greater(x: f64, otherwise: f64) -> f64 {
-    if x > otherwise { x } else { otherwise }
-}
-
-/// The lesser of both, `otherwise` where x is NaN.
-#[inline(always)]
-fn lesser(x: f64, otherwise: f64) -> f64 {
-    if x < otherwise { x } else { otherwise }
+fn clamped<N: Number>(x: N, [min, max]: [N; 2]) -> N {
+    x.greater(min).lesser(max)
 }

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::frustum::Frustum;
+use super::frustum::{Frustum, Image};
 use super::{DepthInterval, TileRectangle};
 use crate::{CameraSphere, HalfSpace, Stretch};
 
@@ -61,8 +61,16 @@ impl TileTest for Stretch {
     fn touches_exactly(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
         self.touches(rectangle, depths) && {
             let m = self.matrix();
-            let axes = [m.x_axis, m.y_axis, m.z_axis];
-            Frustum::new(axes, sides(rectangle, depths), self.center(), [1.0; 2]).meets_ball()
+            let ([a0, a1, _], [b0, b1, _]) = (wide(m.x_axis), wide(m.y_axis));
+            let light = Image {
+                a: [a0, a1],
+                b: [b0, b1],
+                d: wide(m.z_axis),
+                center: wide(self.center()),
+                radius: 1.0,
+                radius_squared: 1.0,
+            };
+            Frustum::new(light, sides(rectangle, depths)).meets_ball()
         }
     }
 }
@@ -79,8 +87,8 @@ impl TileTest for CameraSphere {
     #[inline]
     fn touches_exactly(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
         self.touches(rectangle, depths) && {
-            let sides = sides(rectangle, depths);
-            Frustum::around_sphere(self.center(), self.radius_squared(), sides).meets_ball()
+            let light = Image::of_sphere(wide(self.center()), self.radius_squared().into());
+            Frustum::new(light, sides(rectangle, depths)).meets_ball()
         }
     }
 }
@@ -131,13 +139,19 @@ fn box_reaches(
 
 /// From the least to the greatest x/z, y/z and z.
 #[inline]
-fn sides(rectangle: &TileRectangle, depths: &DepthInterval) -> [[f32; 2]; 3] {
+fn sides(rectangle: &TileRectangle, depths: &DepthInterval) -> [[f64; 2]; 3] {
     let (min, max) = (rectangle.min(), rectangle.max());
     [
         [min.x, max.x],
         [min.y, max.y],
         [depths.near(), depths.far()],
     ]
+    .map(|side| side.map(f64::from))
+}
+
+#[inline]
+fn wide(v: Vec3) -> [f64; 3] {
+    v.to_array().map(f64::from)
 }
 
 /// The lesser and the greater of each component.

@@ -6,10 +6,11 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
 
 use super::place::Spheroids;
 use super::source::{Frame, OfShape, Place, Source, four, scale};
-use super::vector::{Vectors, Wide, cross, dot, length, round_up};
+use super::vector::{Vectors, cross, dot, length, round_up};
 use crate::bound::AXIS_TILT_RADIANS;
 use crate::cull::lanes::LANES;
 use crate::cull::shape::Lane;
+use crate::cull::wide::Wide;
 use crate::{Bound, Fresnel, GgxLobe, MaskingShadowing, Spheroid, Stretch, Vpl, Xi};
 
 impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {

@@ -8,11 +8,13 @@ use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 use super::place::any_orthonormal_pair;
 use super::source::{Frame, OfShape, Source, scale};
 use super::spheroids::{max_fresnel, mirror_direction};
-use super::vector::{Vectors, Wide, cross, fifth_power, length, round_up};
+use super::vector::{Vectors, cross, fifth_power, length, round_up};
 use super::view::Ellipsoids;
 use crate::bound::table::{self, Axis};
 use crate::cull::lanes::LANES;
 use crate::cull::shape::Lane;
+use crate::cull::wide::Wide;
+use crate::tile::Number;
 use crate::{Fresnel, FresnelMajorant, GgxLobe, MaskingShadowing, Stretch, Vpl, Xi, math};
 
 /// The tight bound of a GGX lobe.
@@ -100,7 +102,7 @@ fn across<S: Simd>(
     let over = Wide::splat(simd, 1.0) / length;
     let [x, y, z] = cross.map(|x| (x * over).narrowed());
     let any = any_orthonormal_pair(simd, mirror).1;
-    let is_oblique = length.is_positive(simd);
+    let is_oblique = length.is_greater(length.constant(0.0));
     let across = Vectors::new(
         is_oblique.select(x, any.x),
         is_oblique.select(y, any.y),

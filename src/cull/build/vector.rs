@@ -1,12 +1,14 @@
-//! Vectors of three numbers in each lane, and numbers of `f64`, with glam's and `math`'s operations in
-//! their order: a lane has the bits that the scalar functions give.
+//! Vectors of three numbers in each lane, with glam's and `math`'s operations in their order: a lane has
+//! the bits that the scalar functions give.
 
-use core::ops::{Add, Div, Mul, Sub};
+use core::ops::{Add, Mul, Sub};
 
-use fearless_simd::{MaskNarrow, Simd, SimdBase, SimdFloat, SimdNarrow, SimdWiden};
+use fearless_simd::{Simd, SimdBase, SimdFloat};
 use glam::{Mat3, Vec3};
 
+use crate::cull::wide::Wide;
 use crate::math;
+use crate::tile::Number;
 
 /// A [`Vec3`] in each lane.
 #[derive(Clone, Copy)]
@@ -134,122 +136,6 @@ pub(super) fn product<S: Simd>(matrix: Mat3, v: Vectors<S>) -> Vectors<S> {
         v.x * x.y + v.y * y.y + v.z * z.y,
         v.x * x.z + v.y * y.z + v.z * z.z,
     )
-}
-
-/// An `f64` in each lane: the vector of the lower lanes, and that of the upper ones.
-#[derive(Clone, Copy)]
-pub(super) struct Wide<S: Simd> {
-    low: S::f64s,
-    high: S::f64s,
-}
-
-impl<S: Simd> Wide<S> {
-    #[inline(always)]
-    pub fn new(numbers: S::f32s) -> Self {
-        let (low, high) = numbers.widen();
-        Self { low, high }
-    }
-
-    #[inline(always)]
-    pub fn splat(simd: S, number: f64) -> Self {
-        let numbers = S::f64s::splat(simd, number);
-        Self {
-            low: numbers,
-            high: numbers,
-        }
-    }
-
-    #[inline(always)]
-    pub fn is_positive(self, simd: S) -> S::mask32s {
-        let zero = S::f64s::splat(simd, 0.0);
-        self.low.simd_gt(zero).narrow(self.high.simd_gt(zero))
-    }
-
-    /// Rounded.
-    #[inline(always)]
-    pub fn narrowed(self) -> S::f32s {
-        self.low.narrow(self.high)
-    }
-
-    #[inline(always)]
-    pub fn sqrt(self) -> Self {
-        Self {
-            low: self.low.sqrt(),
-            high: self.high.sqrt(),
-        }
-    }
-}
-
-impl<S: Simd> Add for Wide<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self {
-            low: self.low + other.low,
-            high: self.high + other.high,
-        }
-    }
-}
-
-impl<S: Simd> Add<f64> for Wide<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn add(self, other: f64) -> Self {
-        Self {
-            low: self.low + other,
-            high: self.high + other,
-        }
-    }
-}
-
-impl<S: Simd> Sub for Wide<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self {
-            low: self.low - other.low,
-            high: self.high - other.high,
-        }
-    }
-}
-
-impl<S: Simd> Mul for Wide<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        Self {
-            low: self.low * other.low,
-            high: self.high * other.high,
-        }
-    }
-}
-
-impl<S: Simd> Mul<f64> for Wide<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: f64) -> Self {
-        Self {
-            low: self.low * other,
-            high: self.high * other,
-        }
-    }
-}
-
-impl<S: Simd> Div for Wide<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        Self {
-            low: self.low / other.low,
-            high: self.high / other.high,
-        }
-    }
 }
 
 /// [`math::dot`].
