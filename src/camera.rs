@@ -218,6 +218,7 @@ impl Camera {
 
     /// `point` of world space in camera space, rounded once: where world and camera are far from the
     /// origin, nothing of a near point is lost.
+    #[inline]
     pub fn to_camera_space(&self, point: Vec3) -> Vec3 {
         self.turned_and_moved(|row| math::dot(row, point))
     }
@@ -286,6 +287,7 @@ impl Camera {
     ///
     /// Infinite for the far plane of an infinite projection, NaN for NaN; both are sky to
     /// [`DepthInterval`](crate::DepthInterval).
+    #[inline]
     pub fn depth(&self, ndc_depth: f32) -> f32 {
         self.depth_numerator / (ndc_depth + self.depth_offset)
     }
@@ -293,6 +295,7 @@ impl Camera {
     /// The tile that `pixels` of an image of `image_size` see. Pixel (0, 0) is at the top left.
     ///
     /// `image_size` must not be zero.
+    #[inline]
     pub fn tile_rectangle(&self, image_size: [u32; 2], pixels: PixelRectangle) -> TileRectangle {
         let [width, height] = image_size.map(|n| n as f32);
         let slope = |[x, y]: [u32; 2]| {
@@ -303,6 +306,7 @@ impl Camera {
     }
 
     /// The point of camera space at `depth` that the middle of `pixel` sees.
+    #[inline]
     pub fn point_in_pixel(&self, image_size: [u32; 2], pixel: [u32; 2], depth: f32) -> Vec3 {
         let [width, height] = image_size.map(|n| n as f32);
         let [x, y] = pixel.map(|n| n as f32 + 0.5);

@@ -67,6 +67,7 @@ impl Interleave {
     }
 
     /// The subregion that `pixel` of the image is in, and which pixel of that it is.
+    #[inline]
     pub fn split_pixel(&self, pixel: [u32; 2]) -> (u32, [u32; 2]) {
         let [x, y] = pixel.map(|n| n % self.width);
         (y * self.width + x, pixel.map(|n| n / self.width))
@@ -74,6 +75,7 @@ impl Interleave {
 
     /// The pixel of the image that is `local` in `subregion`: the inverse of
     /// [`split_pixel`](Self::split_pixel). Outside the image, too, for a pixel that no subregion has.
+    #[inline]
     pub fn join_pixel(&self, subregion: u32, local: [u32; 2]) -> [u32; 2] {
         let phase = self.phase(subregion);
         [0, 1].map(|i| local[i].saturating_mul(self.width).saturating_add(phase[i]))
@@ -94,12 +96,14 @@ impl Interleave {
     ///
     /// Neighbouring lights go to different subregions; where their order means something, as in a
     /// grid, shuffle them first.
+    #[inline]
     pub fn split_light(&self, light: u32) -> (u32, u32) {
         (light % self.subregions(), light / self.subregions())
     }
 
     /// The light that is `local` in `subregion`: the inverse of [`split_light`](Self::split_light).
     /// Never past `u32::MAX`.
+    #[inline]
     pub fn join_light(&self, subregion: u32, local: u32) -> u32 {
         local
             .saturating_mul(self.subregions())

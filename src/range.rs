@@ -31,6 +31,7 @@ impl Xi {
     /// assert_eq!(Xi::hashed(7, 0, 1), Xi::hashed(7, 0, 1));
     /// assert_ne!(Xi::hashed(7, 0, 1), Xi::hashed(7, 1, 1));
     /// ```
+    #[inline]
     pub fn hashed(light: u32, frame: u32, seed: u32) -> Self {
         let [bits, ..] = pcg3d([light, frame, seed]);
         // The sum takes 33 bits; its conversion rounds once, and the power of two is exact.
@@ -44,6 +45,7 @@ impl Xi {
 }
 
 /// Three hashed words of three words [Jarzynski & Olano 2020].
+#[inline]
 fn pcg3d(words: [u32; 3]) -> [u32; 3] {
     fn stir([x, y, z]: [u32; 3]) -> [u32; 3] {
         let x = x.wrapping_add(y.wrapping_mul(z));
@@ -123,6 +125,7 @@ impl Roulette {
     /// the radius of its isosurface there [Tokuyoshi & Harada 2017, Eq. 5].
     ///
     /// In the unit of length; zero for I = 0.
+    #[inline]
     pub fn radius(&self, intensity: f32, xi: Xi) -> f32 {
         math::sqrt(intensity) / (self.delta_root * math::sqrt(xi.0))
     }
@@ -131,6 +134,7 @@ impl Roulette {
     /// [`unit_bound`](crate::Bounded::unit_bound), is scaled by for a light of `flux` = Φ.
     ///
     /// Zero for Φ = 0, and else within the normal range of `f32`.
+    #[inline]
     pub fn scale(&self, flux: f32, xi: Xi) -> f32 {
         if flux > 0.0 {
             math::round_up(self.radius(flux, xi), 5).clamp(f32::MIN_POSITIVE, f32::MAX)

@@ -64,6 +64,7 @@ impl TileGrid {
     }
 
     /// The pixels of `tile`; none of a tile outside the grid.
+    #[inline]
     pub fn pixels(&self, tile: [u32; 2]) -> PixelRectangle {
         let edge =
             |first: u32, i: usize| first.saturating_mul(self.tile_size).min(self.image_size[i]);
@@ -74,6 +75,7 @@ impl TileGrid {
     }
 
     /// The tile that `pixel` is in.
+    #[inline]
     pub fn tile_of(&self, pixel: [u32; 2]) -> [u32; 2] {
         pixel.map(|n| n / self.tile_size)
     }

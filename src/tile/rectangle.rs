@@ -39,6 +39,7 @@ impl TileRectangle {
         Ok(Self { min, max })
     }
 
+    #[inline]
     pub(crate) fn from_corners(a: Vec2, b: Vec2) -> Self {
         Self {
             min: a.min(b),
