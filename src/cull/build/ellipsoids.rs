@@ -3,10 +3,9 @@
 use fearless_simd::{Simd, SimdBase};
 use glam::Vec3;
 
-use super::source::{Frame, OfShape, Place, Source, four, scale};
+use super::source::{Fours, Frame, OfShape, Place, Source, four, scale};
 use super::vector::Vectors;
 use super::view::Ellipsoids;
-use crate::cull::shape::Lane;
 use crate::{
     AnisotropicGgxLobe, Bound, Bounded, Ellipsoid, Fresnel, MaskingShadowing, Stretch, Vpl, Xi,
 };
@@ -65,12 +64,8 @@ impl Source for Ellipsoid {
     type Given = Place;
     type Shape = Stretch;
     /// With no flux.
-    type Fours<T: Lane> = [T; 6];
+    type Fours = Fours<6>;
     type Rest = ();
-
-    fn fours_of<T: Lane>(value: T) -> [T; 6] {
-        [value; 6]
-    }
 
     #[inline]
     fn numbers(ellipsoid: &Self, (position, _): Place) -> [[f32; 4]; 6] {
@@ -79,11 +74,6 @@ impl Source for Ellipsoid {
 
     #[inline]
     fn rest(_: &Self::Light) {}
-
-    #[inline]
-    fn given((_, scale): Place) -> f32 {
-        scale
-    }
 
     #[inline]
     fn may_reach(light: &Self, (_, scale): Place) -> bool {
@@ -107,12 +97,8 @@ impl<F: Fresnel, G: MaskingShadowing> Source for AnisotropicGgxLobe<F, G> {
     type Light = Vpl<Self>;
     type Given = Xi;
     type Shape = Stretch;
-    type Fours<T: Lane> = [T; 6];
+    type Fours = Fours<6>;
     type Rest = ();
-
-    fn fours_of<T: Lane>(value: T) -> [T; 6] {
-        [value; 6]
-    }
 
     #[inline]
     fn numbers(light: &Self::Light, _: Xi) -> [[f32; 4]; 6] {
@@ -122,11 +108,6 @@ impl<F: Fresnel, G: MaskingShadowing> Source for AnisotropicGgxLobe<F, G> {
 
     #[inline]
     fn rest(_: &Self::Light) {}
-
-    #[inline]
-    fn given(xi: Xi) -> f32 {
-        xi.get()
-    }
 
     #[inline]
     fn may_reach(light: &Self::Light, _: Xi) -> bool {

@@ -11,24 +11,20 @@ use crate::cull::LightBatch;
 use crate::cull::batch::Chunk;
 use crate::cull::lanes::{LANES, load_fours, parts, splat, store};
 use crate::cull::shape::{InLanes, Lane};
-use crate::{BatchShape, Roulette};
+use crate::{BatchShape, Roulette, Xi};
 
 /// Something that shapes are made of, sixteen at a time.
 pub trait Source: Copy {
     type Light;
-    /// What a light is given besides in a frame.
-    type Given: Copy;
+    type Given: Given;
     type Shape: BatchShape;
-    /// The numbers of a light, four by four, each four of type `T`.
-    type Fours<T: Lane>: Lane + AsRef<[T]> + AsMut<[T]>;
+    /// How many fours of numbers a light has.
+    type Fours: Count;
     /// What a light has besides numbers.
     type Rest: Copy;
 
-    fn fours_of<T: Lane>(value: T) -> Self::Fours<T>;
-    fn numbers(light: &Self::Light, given: Self::Given) -> Self::Fours<[f32; 4]>;
+    fn numbers(light: &Self::Light, given: Self::Given) -> FoursOf<Self, [f32; 4]>;
     fn rest(light: &Self::Light) -> Self::Rest;
-    /// The number that a light is given: its ξ, or the scale of a bound.
-    fn given(given: Self::Given) -> f32;
 
     /// Whether a light may reach somewhere. That is but a guess, which spares the work on those that do
     /// not.
@@ -37,11 +33,55 @@ pub trait Source: Copy {
     /// The shapes of lights, and which of them are shapes of lights that reach somewhere.
     fn shapes<S: Simd>(
         simd: S,
-        numbers: &Self::Fours<[S::f32s; 4]>,
+        numbers: &FoursOf<Self, [S::f32s; 4]>,
         given: S::f32s,
         rest: &[Self::Rest],
         frame: &Frame,
     ) -> (OfShape<S, Self::Shape>, S::mask32s);
+}
+
+/// The fours of a light, each of type `T`.
+pub type FoursOf<L, T> = <<L as Source>::Fours as Count>::Of<T>;
+
+/// So many of anything.
+pub trait Count {
+    type Of<T: Lane>: Lane + AsRef<[T]> + AsMut<[T]>;
+
+    fn of<T: Lane>(value: T) -> Self::Of<T>;
+}
+
+/// `N` fours.
+pub struct Fours<const N: usize>;
+
+impl<const N: usize> Count for Fours<N> {
+    type Of<T: Lane> = [T; N];
+
+    fn of<T: Lane>(value: T) -> [T; N] {
+        [value; N]
+    }
+}
+
+/// What a light is given besides in a frame: its ξ, or where a bound is put.
+pub trait Given: Copy {
+    /// ξ, or the scale.
+    fn number(self) -> f32;
+}
+
+impl Given for Xi {
+    #[inline]
+    fn number(self) -> f32 {
+        self.get()
+    }
+}
+
+/// The position and the scale that a bound is placed with.
+pub(super) type Place = (Vec3, f32);
+
+impl Given for Place {
+    #[inline]
+    fn number(self) -> f32 {
+        self.1
+    }
 }
 
 pub(super) type OfShape<S, T> = Seen<S, <T as InLanes>::Fields<<S as Simd>::f32s>>;
@@ -62,7 +102,7 @@ pub(super) const GROUP: usize = CHUNKS * LANES;
 #[repr(C, align(64))]
 pub(super) struct Group<T: Source> {
     /// Light by light, since four numbers are copied at once.
-    numbers: T::Fours<[[f32; 4]; GROUP]>,
+    numbers: FoursOf<T, [[f32; 4]; GROUP]>,
     given: [f32; GROUP],
     rest: [T::Rest; GROUP],
     names: [u32; GROUP],
@@ -81,7 +121,7 @@ struct Made<T: BatchShape> {
 impl<T: Source> Group<T> {
     /// `light` in all lanes.
     pub fn splat(light: &T::Light, given: T::Given) -> Self {
-        let mut numbers = T::fours_of([[0.0; 4]; GROUP]);
+        let mut numbers = T::Fours::of([[0.0; 4]; GROUP]);
         let of_light = T::numbers(light, given);
         for (lanes, four) in numbers.as_mut().iter_mut().zip(of_light.as_ref()) {
             *lanes = [*four; GROUP];
@@ -93,7 +133,7 @@ impl<T: Source> Group<T> {
         };
         Self {
             numbers,
-            given: [T::given(given); GROUP],
+            given: [given.number(); GROUP],
             rest: [T::rest(light); GROUP],
             names: [0; GROUP],
             made: [none; CHUNKS],
@@ -108,7 +148,7 @@ impl<T: Source> Group<T> {
         for (lanes, four) in numbers.zip(T::numbers(light, given).as_ref()) {
             lanes[lane] = *four;
         }
-        self.given[lane] = T::given(given);
+        self.given[lane] = given.number();
         self.rest[lane] = T::rest(light);
         self.names[lane] = name;
     }
@@ -131,7 +171,7 @@ impl<T: Source> Group<T> {
         made.shaped = 0;
         for part in 0..parts::<S>() {
             let first = chunk * LANES + part * S::f32s::LEN;
-            let mut numbers = T::fours_of([zero; 4]);
+            let mut numbers = T::Fours::of([zero; 4]);
             for (vectors, lanes) in numbers.as_mut().iter_mut().zip(self.numbers.as_ref()) {
                 *vectors = load_fours(simd, &lanes[first..][..S::f32s::LEN]);
             }
@@ -180,6 +220,3 @@ pub(super) fn scale<S: Simd>(simd: S, roulette: &Roulette, flux: S::f32s, xi: S:
 pub(super) fn four(v: Vec3, number: f32) -> [f32; 4] {
     [v.x, v.y, v.z, number]
 }
-
-/// The position and the scale that a bound is placed with.
-pub(super) type Place = (Vec3, f32);

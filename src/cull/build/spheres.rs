@@ -2,10 +2,9 @@
 
 use fearless_simd::{Simd, SimdBase};
 
-use super::source::{Frame, OfShape, Place, Source, four, scale};
+use super::source::{Fours, Frame, OfShape, Place, Source, four, scale};
 use super::vector::{Vectors, round_up};
 use super::view::Spheres;
-use crate::cull::shape::Lane;
 use crate::{Bound, Bounded, CameraSphere, ConstantLobe, LambertLobe, Sphere, Vpl, Xi};
 
 impl Source for LambertLobe {
@@ -13,12 +12,8 @@ impl Source for LambertLobe {
     type Given = Xi;
     type Shape = CameraSphere;
     /// The position and Φ, √ρ and n.
-    type Fours<T: Lane> = [T; 2];
+    type Fours = Fours<2>;
     type Rest = ();
-
-    fn fours_of<T: Lane>(value: T) -> [T; 2] {
-        [value; 2]
-    }
 
     #[inline]
     fn numbers(light: &Self::Light, _: Xi) -> [[f32; 4]; 2] {
@@ -31,11 +26,6 @@ impl Source for LambertLobe {
 
     #[inline]
     fn rest(_: &Self::Light) {}
-
-    #[inline]
-    fn given(xi: Xi) -> f32 {
-        xi.get()
-    }
 
     #[inline]
     fn may_reach(light: &Self::Light, _: Xi) -> bool {
@@ -67,12 +57,8 @@ impl Source for ConstantLobe {
     type Given = Xi;
     type Shape = CameraSphere;
     /// The position and Φ.
-    type Fours<T: Lane> = [T; 1];
+    type Fours = Fours<1>;
     type Rest = ();
-
-    fn fours_of<T: Lane>(value: T) -> [T; 1] {
-        [value; 1]
-    }
 
     #[inline]
     fn numbers(light: &Self::Light, _: Xi) -> [[f32; 4]; 1] {
@@ -81,11 +67,6 @@ impl Source for ConstantLobe {
 
     #[inline]
     fn rest(_: &Self::Light) {}
-
-    #[inline]
-    fn given(xi: Xi) -> f32 {
-        xi.get()
-    }
 
     #[inline]
     fn may_reach(light: &Self::Light, _: Xi) -> bool {
@@ -117,12 +98,8 @@ impl Source for Sphere {
     type Given = Place;
     type Shape = CameraSphere;
     /// The centre and the radius, and the position.
-    type Fours<T: Lane> = [T; 2];
+    type Fours = Fours<2>;
     type Rest = ();
-
-    fn fours_of<T: Lane>(value: T) -> [T; 2] {
-        [value; 2]
-    }
 
     #[inline]
     fn numbers(sphere: &Self, (p, _): Place) -> [[f32; 4]; 2] {
@@ -131,11 +108,6 @@ impl Source for Sphere {
 
     #[inline]
     fn rest(_: &Self::Light) {}
-
-    #[inline]
-    fn given((_, scale): Place) -> f32 {
-        scale
-    }
 
     #[inline]
     fn may_reach(light: &Self, (_, scale): Place) -> bool {

@@ -5,11 +5,10 @@ use core::f32::consts::FRAC_1_PI;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
 
 use super::place::Spheroids;
-use super::source::{Frame, OfShape, Place, Source, four, scale};
+use super::source::{Fours, Frame, OfShape, Place, Source, four, scale};
 use super::vector::{Vectors, cross, dot, length, round_up};
 use crate::bound::AXIS_TILT_RADIANS;
 use crate::cull::lanes::LANES;
-use crate::cull::shape::Lane;
 use crate::cull::wide::Wide;
 use crate::{Bound, Fresnel, GgxLobe, MaskingShadowing, Spheroid, Stretch, Vpl, Xi};
 
@@ -18,12 +17,8 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
     type Given = Xi;
     type Shape = Stretch;
     /// The position and Φ, n and μ, ω_i and √(kμ² + α²), and α.
-    type Fours<T: Lane> = [T; 4];
+    type Fours = Fours<4>;
     type Rest = F;
-
-    fn fours_of<T: Lane>(value: T) -> [T; 4] {
-        [value; 4]
-    }
 
     #[inline]
     fn numbers(light: &Self::Light, _: Xi) -> [[f32; 4]; 4] {
@@ -39,11 +34,6 @@ impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {
     #[inline]
     fn rest(light: &Self::Light) -> F {
         *light.lobe().fresnel()
-    }
-
-    #[inline]
-    fn given(xi: Xi) -> f32 {
-        xi.get()
     }
 
     #[inline]
@@ -123,12 +113,8 @@ impl Source for Spheroid {
     type Given = Place;
     type Shape = Stretch;
     /// The focus and r, the axis and α, and the position.
-    type Fours<T: Lane> = [T; 3];
+    type Fours = Fours<3>;
     type Rest = ();
-
-    fn fours_of<T: Lane>(value: T) -> [T; 3] {
-        [value; 3]
-    }
 
     #[inline]
     fn numbers(spheroid: &Self, (p, _): Place) -> [[f32; 4]; 3] {
@@ -141,11 +127,6 @@ impl Source for Spheroid {
 
     #[inline]
     fn rest(_: &Self::Light) {}
-
-    #[inline]
-    fn given((_, scale): Place) -> f32 {
-        scale
-    }
 
     #[inline]
     fn may_reach(light: &Self, (_, scale): Place) -> bool {

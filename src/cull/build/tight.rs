@@ -6,13 +6,12 @@ use core::marker::PhantomData;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 use super::place::any_orthonormal_pair;
-use super::source::{Frame, OfShape, Source, scale};
+use super::source::{Fours, Frame, OfShape, Source, scale};
 use super::spheroids::{max_fresnel, mirror_direction};
 use super::vector::{Vectors, cross, fifth_power, length, round_up};
 use super::view::Ellipsoids;
 use crate::bound::table::{self, Axis};
 use crate::cull::lanes::LANES;
-use crate::cull::shape::Lane;
 use crate::cull::wide::Wide;
 use crate::tile::Number;
 use crate::{Fresnel, FresnelMajorant, GgxLobe, MaskingShadowing, Stretch, Vpl, Xi, math};
@@ -26,12 +25,8 @@ impl<F: Fresnel, G: MaskingShadowing> Source for Tight<F, G> {
     type Given = Xi;
     type Shape = Stretch;
     /// Those of the lobe, and after α the majorant of F: its value head-on, and its rise.
-    type Fours<T: Lane> = [T; 4];
+    type Fours = Fours<4>;
     type Rest = F;
-
-    fn fours_of<T: Lane>(value: T) -> [T; 4] {
-        [value; 4]
-    }
 
     #[inline]
     fn numbers(light: &Self::Light, xi: Xi) -> [[f32; 4]; 4] {
@@ -43,11 +38,6 @@ impl<F: Fresnel, G: MaskingShadowing> Source for Tight<F, G> {
     #[inline]
     fn rest(light: &Self::Light) -> F {
         *light.lobe().fresnel()
-    }
-
-    #[inline]
-    fn given(xi: Xi) -> f32 {
-        xi.get()
     }
 
     #[inline]
