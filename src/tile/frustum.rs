@@ -255,7 +255,7 @@ impl<N: Number> Plane<N> {
     /// The point of the section at depth `z` that is nearest to c.
     #[inline(always)]
     fn nearest(&self, frustum: &Frustum<N>, z: N) -> Nearest<N> {
-        // Arrays are not mapped here: the compiler does not follow vectors through that.
+        // No array is mapped: where N is a vector, that is a call, through memory.
         let at_depth = |[at_eye, per_depth]: [N; 2]| at_eye - per_depth * z;
         let (u_foot, v_foot) = (at_depth(self.foot[0]), at_depth(self.foot[1]));
         let [across, down] = frustum.slopes;

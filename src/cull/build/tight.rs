@@ -11,7 +11,7 @@ use super::spheroids::{max_fresnel, mirror_direction};
 use super::vector::{Vectors, cross, fifth_power, length, round_up};
 use super::view::Ellipsoids;
 use crate::bound::table::{self, Axis};
-use crate::cull::lanes::LANES;
+use crate::cull::lanes::{LANES, load_fours, splat};
 use crate::cull::wide::Wide;
 use crate::tile::Number;
 use crate::{Fresnel, FresnelMajorant, GgxLobe, MaskingShadowing, Stretch, Vpl, Xi, math};
@@ -90,13 +90,13 @@ fn across<S: Simd>(
     let cross = cross(n, w);
     let length = length(cross);
     let over = Wide::splat(simd, 1.0) / length;
-    let [x, y, z] = cross.map(|x| (x * over).narrowed());
+    let unit = |x: Wide<S>| (x * over).narrowed();
     let any = any_orthonormal_pair(simd, mirror).1;
     let is_oblique = length.is_greater(length.constant(0.0));
     let across = Vectors::new(
-        is_oblique.select(x, any.x),
-        is_oblique.select(y, any.y),
-        is_oblique.select(z, any.z),
+        is_oblique.select(unit(cross[0]), any.x),
+        is_oblique.select(unit(cross[1]), any.y),
+        is_oblique.select(unit(cross[2]), any.z),
     );
     (across, length.narrowed())
 }
@@ -142,7 +142,7 @@ impl<S: Simd> Lobes<S> {
             root,
             masking,
         } = self;
-        let [zero, one] = [0.0, 1.0].map(|x| S::f32s::splat(simd, x));
+        let [zero, one] = splat(simd, [0.0, 1.0]);
         let half_incidence = sine / (cosine + 1.0);
         let half_delta = alpha * 2.0 * sine * masking;
         let rises = rise.simd_gt(zero);
@@ -266,17 +266,15 @@ fn interpolated<S: Simd>(
     v.store_slice(&mut vs[..S::f32s::LEN]);
     w.store_slice(&mut ws[..S::f32s::LEN]);
     let rises = rises.to_bitmask();
-    let mut numbers = [[0.0; LANES]; 8];
+    let [mut head, mut tail] = [[[0.0; 4]; LANES]; 2];
     for lane in 0..S::f32s::LEN {
         let w = (rises >> lane & 1 != 0).then_some(ws[lane]);
         let found = table::between(table::first_knot(firsts[lane]), [us[lane], vs[lane]], w);
-        let [a, b] = found.map(<[f32; 4]>::from);
-        for (numbers, number) in numbers.iter_mut().zip(a.into_iter().chain(b)) {
-            numbers[lane] = number;
-        }
+        (head[lane], tail[lane]) = (found[0].into(), found[1].into());
     }
-    let [a, b, c, d, e, f, ..] = numbers;
-    [a, b, c, d, e, f].map(|lanes| S::f32s::from_slice(simd, &lanes[..S::f32s::LEN]))
+    let [c_1, c_2, a_11, a_21] = load_fours(simd, &head[..S::f32s::LEN]);
+    let [a_22, a_33, ..] = load_fours(simd, &tail[..S::f32s::LEN]);
+    [c_1, c_2, a_11, a_21, a_22, a_33]
 }
 
 /// `Axis::split`, but with the knot's place as a number.
