@@ -27,6 +27,8 @@ mod page;
 mod progress;
 #[path = "../tests/reference/mod.rs"]
 mod reference;
+#[path = "report/room.rs"]
+mod room;
 mod scene;
 #[path = "report/score.rs"]
 mod score;

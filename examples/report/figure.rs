@@ -8,10 +8,10 @@ use plotters::coord::{Shift, cartesian::Cartesian2d};
 use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
 use plotters::element::{Circle, EmptyElement, PathElement, Text, TriangleMarker};
 use plotters::series::{DashedLineSeries, LineSeries};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, IntoFont, RGBColor, WHITE};
 
 use crate::axis::{Scale, short};
+use crate::room::Room;
 
 /// Panels side by side, with one legend for all of them.
 pub struct Figure {
@@ -258,6 +258,27 @@ impl Panel {
         for series in &self.series {
             series.draw(&mut chart, x, y)?;
         }
+        self.draw_labels(&chart, x, y)
+    }
+
+    /// After all marks, to which labels leave room.
+    fn draw_labels(&self, chart: &Chart, x: Scale, y: Scale) -> Outcome {
+        let area = chart.plotting_area();
+        let font = ("sans-serif", 12).into_font().color(&INK);
+        let points = self.series.iter().flat_map(|series| &series.points);
+        let shown = points.filter(|point| x.has(point.x) && y.has(point.y));
+        let shown: Vec<_> = shown
+            .map(|point| (point, area.map_coordinate(&(point.x, point.y))))
+            .collect();
+        let (columns, rows) = area.get_pixel_range();
+        let mut room = Room::new([columns, rows], shown.iter().map(|(_, mark)| *mark));
+        for (point, mark) in shown {
+            let size = area.estimate_text_size(&point.label, &font)?;
+            if let Some(offset) = room.take(mark, size) {
+                let at = EmptyElement::at((point.x, point.y));
+                area.draw(&(at + Text::new(point.label.clone(), offset, font.clone())))?;
+            }
+        }
         Ok(())
     }
 }
@@ -280,7 +301,7 @@ impl Series {
             }
             Line::None => {}
         }
-        for (point, number) in shown.iter().zip(0..) {
+        for point in &shown {
             let at = (point.x, point.y);
             if let Some(range) = point.range {
                 let ends = range.map(|end| (point.x, y.nearest(end)));
@@ -294,26 +315,6 @@ impl Series {
                 |circle| area.draw(&circle),
                 |mark| area.draw(&mark),
             )?;
-            if !point.label.is_empty() {
-                // To the side where there is room, above and below by turns.
-                let is_far = x.share(point.x) > 0.75;
-                let (side, dx) = if is_far {
-                    (HPos::Right, -8)
-                } else {
-                    (HPos::Left, 8)
-                };
-                let dy = if (number + self.look.color) % 2 == 0 {
-                    -7
-                } else {
-                    7
-                };
-                let font = ("sans-serif", 12)
-                    .into_font()
-                    .color(&INK)
-                    .pos(Pos::new(side, VPos::Center));
-                let label = EmptyElement::at(at) + Text::new(point.label.clone(), (dx, dy), font);
-                area.draw(&label)?;
-            }
         }
         Ok(())
     }
