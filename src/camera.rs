@@ -53,12 +53,15 @@ impl Camera {
     ///
     /// The view must not scale. The projection may be symmetric or off-centre, of either handedness
     /// (its last row says whether the eye looks along −z or +z), with depth that rises or falls
-    /// (*reversed z*), to a finite or infinite far plane, over \[0, 1\] or \[−1, 1\].
+    /// (*reversed z*), to a finite or infinite far plane, over \[0, 1\] or \[−1, 1\]. One that turns y
+    /// is Vulkan's, whose NDC y points down: the first row of pixels is at the top of what is seen either
+    /// way. (For a picture that is drawn upside down on purpose, count its rows from the other end.)
     ///
     /// # Errors
     ///
-    /// [`Error::Matrix`] if `view` is not rigid to 10⁻⁴, or `projection` is not a perspective with
-    /// distinct near and far planes whose corners lie within 89.7° of the viewing direction.
+    /// [`Error::Matrix`] if `view` is not rigid to 10⁻⁴, or `projection` is not a perspective (an
+    /// orthographic one has no depth to divide by) with distinct near and far planes whose corners lie
+    /// within 89.7° of the viewing direction.
     pub fn new(view: Mat4, projection: Mat4) -> Result<Self, Error> {
         let (toward, slope_scale, slope_offset) = slopes(projection)?;
         let (depth_numerator, depth_offset) = depths(projection, toward);
@@ -104,8 +107,8 @@ impl Camera {
         depths: Range<f32>,
     ) -> Result<Self, Error> {
         let eye = error::finite("eye", eye)?;
-        let forward = Direction::new(target - eye)?;
-        let right = Direction::new(forward.cross(up))?;
+        let forward = Direction::of("way from the eye to its target", target - eye)?;
+        let right = Direction::of("viewing direction × up", forward.cross(up))?;
         let rotation = Mat3::from_cols(*right, right.cross(*forward), *forward).transpose();
         let translation = -(rotation * eye);
 
@@ -323,7 +326,12 @@ fn slopes(projection: Mat4) -> Result<(f32, Vec2, Vec2), Error> {
         valid,
     };
     let [x, y, z, w] = [0, 1, 2, 3].map(|row| projection.row(row));
-    let stray = [x.y, x.w, y.x, y.w, z.x, z.y, w.x, w.y, w.w];
+    if w.w != 0.0 {
+        let valid =
+            "it must be a perspective, not orthographic, and stored by columns; element (3, 3)";
+        return Err(refused(w.w, valid));
+    }
+    let stray = [x.y, x.w, y.x, y.w, z.x, z.y, w.x, w.y];
     if let Some(element) = stray.into_iter().find(|e| *e != 0.0) {
         let valid = "it must be a perspective along the z axis, with zeros off its pattern";
         return Err(refused(element, valid));
@@ -333,7 +341,8 @@ fn slopes(projection: Mat4) -> Result<(f32, Vec2, Vec2), Error> {
     if weight.is_nan() || weight == 0.0 {
         return Err(refused(w.z, "its last row must be (0, 0, ±1, 0); ±1"));
     }
-    let scale = Vec2::new(weight / x.x, weight / y.y);
+    // Where NDC y points down, the first row of pixels is at −1: as if both were turned.
+    let scale = Vec2::new(weight / x.x, (weight / y.y).abs());
     let offset = Vec2::new(-toward * x.z / x.x, -toward * y.z / y.y);
     Ok((toward, scale, offset))
 }

@@ -41,10 +41,15 @@ impl Direction {
     /// # Ok::<(), stochastic_light_culling::Error>(())
     /// ```
     pub fn new(vector: Vec3) -> Result<Self, Error> {
+        Self::of("direction", vector)
+    }
+
+    /// [`new`](Self::new), for a vector that an error calls `quantity`.
+    pub(crate) fn of(quantity: &'static str, vector: Vec3) -> Result<Self, Error> {
         let largest = vector.abs().max_element();
         if !vector.is_finite() || largest == 0.0 {
             return Err(Error::Vector {
-                quantity: "direction",
+                quantity,
                 value: vector,
                 valid: "finite and not zero",
             });

@@ -6,7 +6,10 @@ mod reference;
 use approx::assert_relative_eq;
 use proptest::prelude::*;
 use reference::Vector;
-use stochastic_light_culling::{Camera, CameraSphere, PixelRectangle, Sphere, glam::Vec3};
+use stochastic_light_culling::{
+    Camera, CameraSphere, PixelRectangle, Sphere,
+    glam::{Mat4, Vec3},
+};
 
 /// Of `f32`.
 const UNIT_ROUNDOFF: f64 = f32::EPSILON as f64 / 2.0;
@@ -81,6 +84,30 @@ proptest! {
         let rounding = UNIT_ROUNDOFF * (9.0 * exact.length() + 64.0 * UNIT_ROUNDOFF * of_origin);
         prop_assert!((seen - exact).length() <= rounding);
     }
+}
+
+/// Vulkan's NDC y points down, and its first row of pixels is at −1: the picture is the same.
+#[test]
+fn pixels_of_a_projection_that_turns_y_are_where_they_were() {
+    let up = reference::camera::off_centre(false, [-0.5, 0.8], [-0.3, 0.4], [-0.001, 0.1]);
+    let down = Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * up;
+    let [up, down] = [up, down].map(|projection| Camera::new(Mat4::IDENTITY, projection).unwrap());
+    for pixel in [[0, 0], [1900, 10], [960, 540], [3, 1079]] {
+        let pixels = PixelRectangle {
+            min: pixel,
+            max: pixel.map(|n| n + 1),
+        };
+        assert_eq!(
+            up.tile_rectangle(IMAGE, pixels),
+            down.tile_rectangle(IMAGE, pixels)
+        );
+        assert_eq!(
+            up.point_in_pixel(IMAGE, pixel, 2.0),
+            down.point_in_pixel(IMAGE, pixel, 2.0)
+        );
+    }
+    assert!(down.point_in_pixel(IMAGE, [0, 0], 1.0).y > 0.39);
+    assert!(down.point_in_pixel(IMAGE, [0, 1079], 1.0).y < -0.29);
 }
 
 #[test]
