@@ -66,7 +66,8 @@
 //!
 //! - `f32` and [`glam`] types; column vectors. Directions point away from the surface.
 //! - Camera space has x to the right, y up and z = depth, positive ahead, for views of either
-//!   handedness ([`Camera`]). Pixel (0, 0) is at the top left.
+//!   handedness ([`Camera`]). Pixel (0, 0) is at the top left, whether NDC y points up or, as Vulkan's,
+//!   down.
 //! - Radians, sr, W, W/sr; a light's radiance at distance l is I/l².
 //! - α is the GGX roughness; artists' *perceptual* roughness is usually √α.
 //! - n is the surface normal, ω_i and ω_o point to where light came from and goes to, μ = ω_i·n,

@@ -1,8 +1,8 @@
 //! The part of an engine that this crate does most of: from lights and a depth buffer to lists.
 
 use stochastic_light_culling::{
-    BatchBuilder, Bounded, Camera, CullCounters, Culler, DepthInterval, DepthOrder, Error, GgxLobe,
-    LightBatch, LightLists, Roulette, Schlick, Spheroid, Stretch, TileDepths, TileGrid, Vpl, Xi,
+    BatchBuilder, Camera, CullCounters, Culler, DepthInterval, DepthOrder, Ellipsoid, Error,
+    GgxLobe, LightBatch, LightLists, Roulette, Schlick, Stretch, TileDepths, TileGrid, Vpl, Xi,
 };
 
 pub type Light = Vpl<GgxLobe<Schlick>>;
@@ -12,7 +12,7 @@ const SEED: u32 = 0;
 /// Lights that do not move, and all memory that a frame needs.
 pub struct LightPass {
     /// Each with the shape of its range, which no frame changes.
-    lights: Vec<(Light, Spheroid)>,
+    lights: Vec<(Light, Ellipsoid)>,
     roulette: Roulette,
     size: [u32; 2],
     grid: TileGrid,
@@ -97,7 +97,9 @@ impl LightPass {
             self.roulette
                 .estimate(intensity, distance_squared, xi(*number, frame))
         };
-        self.lists.of(tile, interval).iter().map(from).sum()
+        // From 0, since the sum of no numbers is −0.
+        let list = self.lists.of(tile, interval);
+        list.iter().map(from).fold(0.0, |sum, more| sum + more)
     }
 
     /// Lights that reach anything at all in this frame.
@@ -111,8 +113,8 @@ impl LightPass {
     }
 }
 
-fn with_bound(light: Light) -> (Light, Spheroid) {
-    (light, light.lobe().unit_bound())
+fn with_bound(light: Light) -> (Light, Ellipsoid) {
+    (light, light.lobe().tight_bound())
 }
 
 /// Each light's, new in each frame, for culling and for shading.

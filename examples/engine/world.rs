@@ -1,5 +1,7 @@
 //! What the engine has besides its light culling: a scene, a camera and a depth buffer.
 
+// glam before 0.33 has these matrices as `Mat4::look_at_rh`, `Mat4::perspective_infinite_reverse_rh` and
+// so on.
 use stochastic_light_culling::{
     Camera, Direction, Error, Ggx, GgxLobe, Schlick, Vpl, Xi,
     glam::{

@@ -97,8 +97,8 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
     Study {
         name: "delta_sweep",
         caption: "Down and to the left is better; the table is for δ = 0.001. Along a curve δ falls from 0.1 to 10⁻⁶; for light \
-                  without culling the number of lights rises instead. Bars are 95 % confidence. To the \
-                  right, the mean of all pixels: what is unbiased stays at zero whatever δ is.",
+                  without culling the number of lights rises instead. Bars are 95 % confidence. Below, \
+                  the mean of all pixels: what is unbiased stays at zero whatever δ is.",
         sheet,
         summary: Some(summary),
         figure: Figure {

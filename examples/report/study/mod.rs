@@ -57,10 +57,12 @@ const INTERLEAVE: u32 = 4;
 
 /// What a figure of frames says of itself.
 fn of_frames(subjects: &[Subject], rest: &str) -> String {
-    let effort = &subjects[0].effort;
-    let [width, height] = effort.size;
-    format!(
-        "{width}×{height}, {} rays, α = {ROUGHNESS}, F0 = {F0}; {rest}",
-        effort.vpls
-    )
+    let rays = format!("{} rays; {rest}", subjects[0].effort.vpls);
+    of_any_rays(subjects, &rays)
+}
+
+/// Where there is more than one number of rays.
+fn of_any_rays(subjects: &[Subject], rest: &str) -> String {
+    let [width, height] = subjects[0].effort.size;
+    format!("{width}×{height}, α = {ROUGHNESS}, F0 = {F0}, {rest}")
 }

@@ -1,6 +1,6 @@
 //! (f) Error and milliseconds against the number of lights.
 
-use super::{DELTA, F0, INTERLEAVE, ROUGHNESS, Study, of_frames};
+use super::{DELTA, F0, INTERLEAVE, ROUGHNESS, Study, of_any_rays};
 use crate::figure::{Axis, Figure, Panel, Point, Series};
 use crate::frame::BoundKind;
 use crate::method::{Method, Stage};
@@ -99,7 +99,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
         summary: None,
         figure: Figure {
             title: "Time against the number of lights".into(),
-            subtitle: of_frames(
+            subtitle: of_any_rays(
                 subjects,
                 &format!("δ = {DELTA}, glossy lights alone, interleaved {INTERLEAVE}×{INTERLEAVE}"),
             ),
