@@ -223,12 +223,8 @@ impl<T: BatchShape> LightBatch<T> {
         self.len = 0;
         // One more: where the last one may spill.
         let (chunks, reach) = (other.chunks().len() + 1, other.reach().len() + 1);
-        if self.chunks.len() < chunks {
-            self.chunks.resize(chunks, Chunk::NOWHERE);
-        }
-        if self.reach.len() < reach {
-            self.reach.resize(reach, Reach::NONE);
-        }
+        grow(&mut self.chunks, chunks, &Chunk::NOWHERE);
+        grow(&mut self.reach, reach, &Reach::NONE);
         self.reach[..reach].fill(Reach::NONE);
         (&mut self.chunks[..chunks], &mut self.reach[..reach])
     }
@@ -250,6 +246,14 @@ impl<T: BatchShape> Extend<(u32, T)> for LightBatch<T> {
         for (number, shape) in lights {
             self.push(number, &shape);
         }
+    }
+}
+
+/// Makes room for `len` values, and where there was none for half as many again: what a frame needs
+/// depends on its random numbers.
+pub(super) fn grow<V: Copy>(values: &mut Vec<V>, len: usize, value: &V) {
+    if values.len() < len {
+        values.resize(len + len / 2, *value);
     }
 }
 

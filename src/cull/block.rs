@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use fearless_simd::Simd;
 
-use super::batch::Chunk;
+use super::batch::{Chunk, grow};
 use super::exact::list_exactly;
 use super::filter::filter;
 use super::lanes::{parts, splat, store};
@@ -133,9 +133,7 @@ impl<T: BatchShape> Walk<'_, T> {
     #[inline(always)]
     fn tiles<S: Simd>(&mut self, simd: S, lights: &LightBatch<T>, area: Area) {
         let chunks = lights.chunks();
-        if self.rows.len() < chunks.len() {
-            self.rows.resize(chunks.len(), Row::NONE);
-        }
+        grow(self.rows, chunks.len(), &Row::NONE);
         let rows = &mut self.rows[..chunks.len()];
         for y in area.min[1]..area.max[1] {
             let down = self.tiles.down(y);

@@ -10,8 +10,8 @@ use crate::Error;
 
 /// Finds the lights of each tile.
 ///
-/// Holds the memory that it works in, so that frames after the first allocate nothing, and knows which
-/// vectors the processor has.
+/// Holds the memory that it works in, with half as much to spare, so that frames after the first allocate
+/// nothing unless one needs more than that; and knows which vectors the processor has.
 ///
 /// ```
 /// use stochastic_light_culling::{
@@ -186,6 +186,7 @@ pub(super) fn counted(
     tiles: &TileDepths,
     lists: &mut LightLists,
 ) -> Result<CullCounters, Error> {
+    lists.finish();
     if u32::try_from(lists.len()).is_err() {
         lists.reset([0; 2], 0);
         return Err(Error::Size {

@@ -31,7 +31,7 @@ use alloc::vec::Vec;
 /// assert_eq!(lists.of([1, 0], 0), [8, 9]);
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct LightLists {
     columns: usize,
     intervals: usize,
@@ -39,6 +39,8 @@ pub struct LightLists {
     /// Longer than what is in use, so that whole vectors can be written.
     numbers: Vec<u32>,
     len: usize,
+    /// Whether `numbers` became longer since the lists were empty.
+    has_grown: bool,
 }
 
 impl LightLists {
@@ -50,6 +52,7 @@ impl LightLists {
             ranges: Vec::new(),
             numbers: Vec::new(),
             len: 0,
+            has_grown: false,
         }
     }
 
@@ -129,8 +132,17 @@ impl LightLists {
         let end = self.len + count;
         if self.numbers.len() < end {
             self.numbers.resize(end.max(2 * self.numbers.len()), 0);
+            self.has_grown = true;
         }
         &mut self.numbers[self.len..]
+    }
+
+    /// Leaves room for frames with half as many lights again, if there was none for this one.
+    pub(super) fn finish(&mut self) {
+        if self.has_grown {
+            self.room_for(self.len / 2);
+            self.has_grown = false;
+        }
     }
 
     /// Takes the first `count` of the numbers not yet in use.
@@ -143,5 +155,13 @@ impl LightLists {
     pub(super) fn end(&mut self, slot: usize, start: usize) {
         let range = [start as u32, self.len as u32];
         self.ranges[slot] = if start < self.len { range } else { [0; 2] };
+    }
+}
+
+/// Equal if the same lights are in the same places.
+impl PartialEq for LightLists {
+    fn eq(&self, other: &Self) -> bool {
+        let of = |lists: &Self| [lists.columns, lists.intervals];
+        of(self) == of(other) && self.ranges == other.ranges && self.numbers() == other.numbers()
     }
 }

@@ -113,5 +113,6 @@ impl<T: BatchShape> Worker<T> {
         } = self;
         lists.reset(area.size(), tiles.intervals() as usize);
         dispatch!(level, simd => scratch.cull(simd, batch, tiles, *area, lists));
+        lists.finish();
     }
 }
