@@ -22,9 +22,11 @@ pub struct Camera {
     translation: Vec3,
     /// How far the rotation is from orthonormal.
     rotation_deviation: f32,
-    /// A point of world space next to the eye, and what rounding leaves between them, in camera space.
+    /// A point of world space, next to the eye where `f32` reaches it.
     anchor: Vec3,
+    /// The same in camera space: what rounding leaves between it and the eye.
     anchor_seen: Vec3,
+    /// What is lost because of that, in length.
     rounding_of_anchor: f32,
     /// Slope (x/z, y/z) of a point = NDC · scale + offset.
     slope_scale: Vec2,
@@ -237,8 +239,9 @@ impl Camera {
         Vec3::new(coordinate(0), coordinate(1), coordinate(2))
     }
 
-    /// `point` of world space in camera space, in `f32` alone: off by at most 9u of its length and
+    /// What [`to_camera_space`](Self::to_camera_space) gives, but in `f32` alone: off by at most 9u of its length and
     /// [`rounding_of_anchor`](Self::rounding_of_anchor), wherever the world's origin is.
+    #[inline]
     pub(crate) fn seen_from_anchor(&self, point: Vec3) -> Vec3 {
         self.rotation * (point - self.anchor) + self.anchor_seen
     }

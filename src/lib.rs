@@ -99,7 +99,7 @@
 //! This holds for every α from 2⁻²⁰ to 1, every μ > 0, ranges from 10⁻¹² to 10¹², lights up to 10⁶
 //! ranges from the origin and the eye, ξ from 2⁻³², views of any rotation, handedness and offset with
 //! corners up to 89.7° off, lights around and behind the eye, and depth intervals of no thickness.
-//! Farther out a bound is merely large, the whole view if it must be. The one step that is not proved
+//! Farther out a bound is merely large, the whole view if it must be, or 10⁻¹⁸ at least. The one step that is not proved
 //! is the quasi-convexity of [`Conductor`]'s F, which a search bears out. The ellipsoids of the table behind
 //! [`GgxLobe::tight_bound`], between whose knots it is interpolated, are proved to enclose by a computer,
 //! box by box: `examples/tabulate -- --prove`.

@@ -104,6 +104,8 @@ pub struct Stretch {
 impl Stretch {
     /// Of the centre and of the box of a tile.
     pub(crate) const ROUNDINGS: [f32; 2] = [6.0, 9.0];
+    /// Of its reciprocal M is made, which is not to overflow times a slope and a depth.
+    pub(crate) const LEAST_SEMI_AXIS: f32 = 1e-30;
 
     /// The stretch of `ellipsoid` before `camera`; `None` if it is empty.
     ///
@@ -126,8 +128,7 @@ impl Stretch {
         let rounding = rounding_before(camera, center, longest, Self::ROUNDINGS)
             + camera.rounding_of_terms(parts);
         let tilt = longest * (128.0 * math::UNIT_ROUNDOFF + 6.0 * camera.rotation_deviation());
-        // The reciprocal of a subnormal number would overflow.
-        let enlarged = math::round_up(shortest + (rounding + tilt), 4).max(f32::MIN_POSITIVE);
+        let enlarged = math::round_up(shortest + (rounding + tilt), 4).max(Self::LEAST_SEMI_AXIS);
         let matrix = unscaled * (1.0 / enlarged);
         Some(Self {
             matrix,
@@ -229,6 +230,8 @@ pub struct CameraSphere {
 impl CameraSphere {
     /// Of the centre and of the box of a tile.
     pub(crate) const ROUNDINGS: [f32; 2] = [9.0, 2.0];
+    /// Its square, and those of distances as long, are far above the subnormal numbers.
+    pub(crate) const LEAST_RADIUS: f32 = 1e-18;
 
     /// `sphere` before `camera`; `None` if it is empty.
     #[inline]
@@ -241,14 +244,15 @@ impl CameraSphere {
         let rounding = rounding_before(camera, center, radius, Self::ROUNDINGS);
         let rounding = rounding + camera.rounding_of_anchor();
         let scaling = 3.0 * camera.rotation_deviation() * radius;
-        let enlarged = math::round_up(radius + rounding + scaling, 8);
-        // Neither is it if the radius or the centre is not.
-        if !enlarged.is_finite() {
+        let enlarged = math::round_up(radius + rounding + scaling, 10);
+        // Where the centre is not finite, nor is the radius by now.
+        if !(enlarged * enlarged).is_finite() {
             return Some(Self {
                 center: Vec3::ZERO,
                 radius_squared: f32::INFINITY,
             });
         }
+        let enlarged = enlarged.max(Self::LEAST_RADIUS);
         Some(Self {
             center,
             radius_squared: enlarged * enlarged,

@@ -1,7 +1,7 @@
 use alloc::vec::Vec;
 
 use super::lanes::{LANES, Lanes};
-use super::shape::{BatchShape, InLanes};
+use super::shape::{BatchShape, InLanes, Lane};
 
 /// Sixteen lights: the numbers that the tile test takes, and which lights they are.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +17,26 @@ impl<T: InLanes> Chunk<T> {
         fields: T::NOWHERE,
         numbers: [0; LANES],
     };
+
+    /// Puts the light in the lane `from_lane` of `from` in `lane`.
+    #[inline(always)]
+    pub fn copy(&mut self, lane: usize, from: &Self, from_lane: usize) {
+        let fields = self.fields.as_mut().iter_mut();
+        for (to, field) in fields.zip(from.fields.as_ref()) {
+            to[lane] = field[from_lane];
+        }
+        self.numbers[lane] = from.numbers[from_lane];
+    }
+
+    /// The fields of the light in `lane`.
+    #[inline(always)]
+    pub fn fields_of<V: Lane + From<f32>>(&self, lane: usize) -> T::Fields<V> {
+        let mut fields = T::fields_of(V::from(0.0));
+        for (field, lanes) in fields.as_mut().iter_mut().zip(self.fields.as_ref()) {
+            *field = lanes[lane].into();
+        }
+        fields
+    }
 }
 
 /// Each of a chunk's lights, as bits.
@@ -152,11 +172,7 @@ impl<T: BatchShape> LightBatch<T> {
     pub fn iter(&self) -> impl Iterator<Item = (u32, T)> {
         (0..self.len).map(|index| {
             let (chunk, lane) = (&self.chunks[index / LANES], index % LANES);
-            let mut fields = T::fields_of(0.0);
-            for (field, lanes) in fields.as_mut().iter_mut().zip(chunk.fields.as_ref()) {
-                *field = lanes[lane];
-            }
-            (chunk.numbers[lane], T::from_fields(fields))
+            (chunk.numbers[lane], T::from_fields(chunk.fields_of(lane)))
         })
     }
 
@@ -187,12 +203,7 @@ impl<T: BatchShape> LightBatch<T> {
             if to == 0 {
                 self.begin(index, &Chunk::NOWHERE);
             }
-            let place = &mut self.chunks[index];
-            let fields = place.fields.as_mut().iter_mut();
-            for (lanes, field) in fields.zip(chunk.fields.as_ref()) {
-                lanes[to] = field[from];
-            }
-            place.numbers[to] = chunk.numbers[from];
+            self.chunks[index].copy(to, chunk, from);
             self.reach[index / LANES].widen(index % LANES, reach);
             self.len += 1;
         }

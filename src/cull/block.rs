@@ -111,11 +111,12 @@ impl<T: BatchShape> Walk<'_, T> {
         area: Area,
         blocks: &mut [LightBatch<T>],
     ) {
-        let (Some([across, down, depths]), [block, smaller @ ..]) =
-            (self.tiles.around(area), blocks)
-        else {
+        let Some([across, down, depths]) = self.tiles.around(area) else {
             self.counters.empty += 1;
             return;
+        };
+        let [block, smaller @ ..] = blocks else {
+            return self.block(simd, lights, area, blocks);
         };
         simd.vectorize(
             #[inline(always)]

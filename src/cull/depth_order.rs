@@ -47,9 +47,9 @@ impl DepthOrder {
     /// `u32` counts, are left out.
     pub fn of(&mut self, positions: impl IntoIterator<Item = Vec3>, camera: &Camera) -> &[u32] {
         let forward = camera.rotation().row(2);
-        let offset = camera.translation().z;
+        let [anchor, seen] = camera.anchor();
         let depth = |position: Vec3| {
-            let depth = forward.dot(position) + offset;
+            let depth = forward.dot(position - anchor) + seen.z;
             // Not so for what lies behind, for −0, and for what is too far away to be a number.
             if depth > 0.0 { depth } else { 0.0 }
         };

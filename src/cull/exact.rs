@@ -10,7 +10,7 @@ use super::wide::Wide;
 use super::{LightBatch, LightLists};
 use crate::tile::Frustum;
 
-/// How many lights were tested, and how many of those that pass the box test touch nothing.
+/// How many lights were tested, and how many of those that pass the box test do not touch the tile.
 pub(super) struct Tested {
     pub lights: u64,
     pub rejected: u64,
@@ -47,6 +47,7 @@ pub(super) fn list_exactly<S: Simd, T: BatchShape>(
     )
 }
 
+/// The places of the lights of the first chunk: a light's place is where it is in the batch.
 const FIRST_PLACES: [u32; LANES] = {
     let mut places = [0; LANES];
     let mut place = 0;
@@ -71,7 +72,8 @@ fn keep<S: Simd, T: BatchShape>(
     for start in (0..count).step_by(LANES) {
         let lanes = LANES.min(count - start);
         for (lane, place) in places[start..][..lanes].iter().enumerate() {
-            copy_light(chunks, *place as usize, &mut side_by_side, lane);
+            let place = *place as usize;
+            side_by_side.copy(lane, &chunks[place / LANES], place % LANES);
         }
         for part in 0..parts::<S>() {
             let wanted = ((1_u64 << lanes) - 1) >> (part * S::u32s::LEN);
@@ -85,16 +87,6 @@ fn keep<S: Simd, T: BatchShape>(
         }
     }
     end
-}
-
-#[inline(always)]
-fn copy_light<T: BatchShape>(chunks: &[Chunk<T>], place: usize, to: &mut Chunk<T>, lane: usize) {
-    let (from, from_lane) = (&chunks[place / LANES], place % LANES);
-    let fields = from.fields.as_ref().iter();
-    for (field, to) in fields.zip(to.fields.as_mut()) {
-        to[lane] = field[from_lane];
-    }
-    to.numbers[lane] = from.numbers[from_lane];
 }
 
 /// Which of the `wanted` lights touch the tile, as bits.
@@ -135,10 +127,6 @@ fn touching<S: Simd, T: BatchShape>(
 
 #[inline(always)]
 fn meets<T: BatchShape>(chunk: &Chunk<T>, lane: usize, sides: [[f32; 2]; 3]) -> bool {
-    let mut fields = T::fields_of(0.0);
-    for (field, lanes) in fields.as_mut().iter_mut().zip(chunk.fields.as_ref()) {
-        *field = f64::from(lanes[lane]);
-    }
     let sides = sides.map(|side| side.map(f64::from));
-    Frustum::new(T::image(&fields), sides).meets_ball()
+    Frustum::new(T::image(&chunk.fields_of(lane)), sides).meets_ball()
 }

@@ -4,7 +4,7 @@ use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdMask, f32x16, mask32x16, 
 
 use super::LightBatch;
 use super::batch::{Chunk, Reach};
-use super::lanes::{LANES, load, parts};
+use super::lanes::{LANES, load, parts, store};
 use super::shape::{BatchShape, TileLanes};
 
 /// Which of sixteen chunks reach depths of `tile`, as bits.
@@ -62,7 +62,7 @@ pub(super) fn filter<S: Simd, T: BatchShape>(
             }
         }
     }
-    blank(into, len);
+    blank(simd, into, len);
     kept.set_len(len);
     u64::from(tested) * LANES as u64
 }
@@ -94,12 +94,7 @@ fn append_each<T: BatchShape>(
     while bits != 0 {
         let from = bits.trailing_zeros() as usize % LANES;
         bits &= bits - 1;
-        let (to, lane) = (&mut into[place / LANES], place % LANES);
-        let fields = chunk.fields.as_ref().iter();
-        for (field, to) in fields.zip(to.fields.as_mut()) {
-            to[lane] = field[from];
-        }
-        to.numbers[lane] = chunk.numbers[from];
+        into[place / LANES].copy(place % LANES, chunk, from);
         place += 1;
     }
 }
@@ -139,10 +134,17 @@ fn append_lanes<S: Simd, T: BatchShape>(
 }
 
 /// Lets the lanes from `len` to the end of its chunk touch nothing.
-fn blank<T: BatchShape>(chunks: &mut [Chunk<T>], len: usize) {
+#[inline(always)]
+fn blank<S: Simd, T: BatchShape>(simd: S, chunks: &mut [Chunk<T>], len: usize) {
+    let taken = (1_u64 << (len % LANES)) - 1;
     let fields = chunks[len / LANES].fields.as_mut().iter_mut();
     for (lanes, nowhere) in fields.zip(T::NOWHERE.as_ref()) {
-        lanes[len % LANES..].copy_from_slice(&nowhere[len % LANES..]);
+        for part in 0..parts::<S>() {
+            let of_part = (taken >> (part * S::f32s::LEN)) & ((1 << S::f32s::LEN) - 1);
+            let taken = S::mask32s::from_bitmask(simd, of_part);
+            let kept = taken.select(load(simd, lanes, part), load(simd, nowhere, part));
+            store::<S>(lanes, part, kept);
+        }
     }
 }
 

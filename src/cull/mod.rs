@@ -16,7 +16,7 @@
 //!
 //! The lanes of a vector do what [`TileTest::touches`](crate::TileTest::touches) does, operation by
 //! operation, so the lists are those of the scalar test. A block holds its tiles' rectangles and depths,
-//! and no operation of the test is but monotone, nor is rounding: what touches a tile touches its block,
+//! and every operation of the test is monotone, as is rounding: what touches a tile touches its block,
 //! bit for bit, without any margin. What `build` makes has the bits that the scalar functions give. What
 //! the exact test then rejects is its own promise: see
 //! [`TileTest::touches_exactly`](crate::TileTest::touches_exactly).

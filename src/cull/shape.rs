@@ -120,6 +120,7 @@ impl InLanes for Stretch {
         Self::from_parts(matrix, Vec3::new(x, y, z))
     }
 
+    #[inline]
     fn reach(&self) -> [f32; 2] {
         let (m, depth) = (self.matrix().z_axis.z, self.center().z);
         outward([depth - UNIT_REACH, depth + UNIT_REACH].map(|end| end / m))
@@ -197,6 +198,7 @@ impl InLanes for CameraSphere {
         Self::from_parts(Vec3::new(x, y, z), radius_squared)
     }
 
+    #[inline]
     fn reach(&self) -> [f32; 2] {
         let radius = math::round_up(math::sqrt(self.radius_squared()), 4);
         outward([self.center().z - radius, self.center().z + radius])
@@ -229,13 +231,14 @@ impl InLanes for CameraSphere {
     }
 }
 
-/// How far the unit sphere reaches: the test rounds m z, and what is left of that and the centre, and 4u
-/// of each is more.
+/// The unit sphere's reach in m z, enlarged by what the test rounds there: m z, and its difference from the
+/// centre. [`SHARE`] covers the part of it that grows with the depth.
 pub(super) const UNIT_REACH: f32 = 1.0 + 4.0 * math::UNIT_ROUNDOFF;
 
 const SHARE: f32 = 8.0 * math::UNIT_ROUNDOFF;
 
 /// `range`, a few roundings wider; everything where it is not a range.
+#[inline]
 fn outward([near, far]: [f32; 2]) -> [f32; 2] {
     let (near, far) = (near - SHARE * near.abs(), far + SHARE * far.abs());
     if near <= far {

@@ -2,7 +2,9 @@
 
 use core::ops::{Add, Div, Mul, Sub};
 
-use fearless_simd::{ExtractToken, MaskNarrow, Simd, SimdBase, SimdFloat, SimdNarrow, SimdWiden};
+use fearless_simd::{
+    ExtractToken, MaskNarrow, Select, Simd, SimdBase, SimdFloat, SimdNarrow, SimdWiden,
+};
 
 use crate::tile::Number;
 
@@ -139,17 +141,36 @@ impl<S: Simd> Number for Wide<S> {
 
     #[inline(always)]
     fn greater(self, otherwise: Self) -> Self {
-        Self {
-            low: self.low.max(otherwise.low),
-            high: self.high.max(otherwise.high),
+        // Elsewhere, unlike on x86, a NaN makes the result one.
+        if cfg!(any(target_arch = "x86", target_arch = "x86_64")) {
+            Self {
+                low: self.low.max(otherwise.low),
+                high: self.high.max(otherwise.high),
+            }
+        } else {
+            let low = self.low.simd_gt(otherwise.low);
+            let high = self.high.simd_gt(otherwise.high);
+            Self {
+                low: low.select(self.low, otherwise.low),
+                high: high.select(self.high, otherwise.high),
+            }
         }
     }
 
     #[inline(always)]
     fn lesser(self, otherwise: Self) -> Self {
-        Self {
-            low: self.low.min(otherwise.low),
-            high: self.high.min(otherwise.high),
+        if cfg!(any(target_arch = "x86", target_arch = "x86_64")) {
+            Self {
+                low: self.low.min(otherwise.low),
+                high: self.high.min(otherwise.high),
+            }
+        } else {
+            let low = self.low.simd_lt(otherwise.low);
+            let high = self.high.simd_lt(otherwise.high);
+            Self {
+                low: low.select(self.low, otherwise.low),
+                high: high.select(self.high, otherwise.high),
+            }
         }
     }
 

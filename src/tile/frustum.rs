@@ -16,8 +16,8 @@
 //! The squared distance g(z) is convex and consists of parabolas, one for each side or corner of the
 //! parallelogram that may be nearest. With R the way from c to the nearest point z w, half the slope is
 //! s = R·w, and half the curvature is ‖w‖² less the part along the side that the point may slide on.
-//! Newton's step is exact as soon as it stays in its parabola: nine of ten lights are decided where c
-//! itself is deep, and almost all others one step on.
+//! Newton's step is exact as soon as it stays in its parabola: nine of ten lights are decided at the
+//! depth of c, and almost all others one step on.
 //!
 //! # What decides
 //!
@@ -75,7 +75,7 @@ pub(crate) struct Frustum<N> {
     slopes: [Interval<N>; 2],
     /// Of the tile, as far as the ball reaches.
     depths: Interval<N>,
-    /// Of c.
+    /// The depth of c.
     depth: N,
 }
 
@@ -111,7 +111,7 @@ impl<N: Number> Frustum<N> {
     #[cfg(feature = "cull")]
     #[inline(always)]
     pub fn first_verdict(&self) -> Verdict<N> {
-        let nearest = Plane::new(self).nearest(self, self.first_depth());
+        let nearest = Section::new(self).nearest(self, self.first_depth());
         self.seen_along(nearest.way).verdict
     }
 
@@ -165,11 +165,11 @@ impl Frustum<f64> {
         if self.is_out_of_reach() {
             return false;
         }
-        let plane = Plane::new(self);
+        let section = Section::new(self);
         let mut tried = [f64::NEG_INFINITY, f64::INFINITY];
         let mut z = self.first_depth();
         for _ in 0..MOST_STEPS {
-            let nearest = plane.nearest(self, z);
+            let nearest = section.nearest(self, z);
             let Seen { slope, verdict } = self.seen_along(nearest.way);
             if !verdict.is_open {
                 return !verdict.is_apart;
@@ -221,8 +221,8 @@ impl Frustum<f64> {
     }
 }
 
-/// Coordinates u and v along a and b.
-struct Plane<N> {
+/// Coordinates u and v along a and b in the sections, all of which are parallel.
+struct Section<N> {
     /// u* = `foot[0][0]` − z `foot[0][1]`, and v*.
     foot: [[N; 2]; 2],
     /// By how much the nearest u grows as v falls, and v as u falls.
@@ -230,7 +230,7 @@ struct Plane<N> {
     v_per_u: N,
 }
 
-impl<N: Number> Plane<N> {
+impl<N: Number> Section<N> {
     #[inline(always)]
     fn new(frustum: &Frustum<N>) -> Self {
         let Image {

@@ -1,9 +1,10 @@
 //! The smallest cases of NaN and of lights lost that arbitrary bits have found.
 
 use stochastic_light_culling::{
-    Bound, Bounded, Camera, Conductor, Direction, Ellipsoid, Ggx, GgxLobe, LambertLobe, Lobe,
-    NoFresnel, Spheroid, Stretch,
-    glam::{Mat3, Mat4, Vec3},
+    BatchBuilder, Bound, Bounded, Camera, CameraSphere, Conductor, Culler, DepthInterval,
+    Direction, Ellipsoid, Ggx, GgxLobe, LambertLobe, LightBatch, LightLists, Lobe, NoFresnel,
+    Roulette, Sphere, Spheroid, Stretch, TileDepths, TileRectangle, TileTest,
+    glam::{Mat3, Mat4, Vec2, Vec3},
 };
 
 /// A unit spheroid of roughness α about +z, at normal incidence.
@@ -128,4 +129,50 @@ fn brightest_light_reaches_everything() {
         Direction::Z,
     );
     assert!(lobe.value(Vec3::Z) > 0.0);
+}
+
+/// A sphere alone in a tile, as it is tested, pushed and built.
+fn is_listed(center: Vec3, radius: f32, slope: f32, depth: f32) {
+    let camera = camera_from(Vec3::ZERO);
+    let sphere = Sphere::new(center, radius).expect("in range");
+    let seen = CameraSphere::new(&sphere, &camera).expect("not empty");
+    let rectangle = TileRectangle::new(Vec2::splat(-slope), Vec2::splat(slope)).expect("in order");
+    let depths = DepthInterval::new(depth, depth).expect("in order");
+    assert!(seen.touches(&rectangle, &depths) && seen.touches_exactly(&rectangle, &depths));
+
+    let mut tiles = TileDepths::new([1; 2], 1, |_| rectangle).expect("one");
+    tiles.set([0; 2], [depths]);
+    let (mut pushed, mut built) = (LightBatch::new(), LightBatch::new());
+    pushed.push(7, &seen);
+    let roulette = Roulette::new(1.0).expect("in range");
+    BatchBuilder::new(&roulette, &camera).add_placed([(7, &sphere, Vec3::ZERO, 1.0)], &mut built);
+    for batch in [pushed, built] {
+        for mut culler in [Culler::new(), Culler::new().with_exact_test()] {
+            let mut lists = LightLists::new();
+            culler.cull(&batch, &tiles, &mut lists).expect("few enough");
+            assert_eq!(lists.numbers(), [7]);
+        }
+    }
+}
+
+#[test]
+fn spheres_whose_squares_are_subnormal_are_listed() {
+    is_listed(Vec3::new(0.0, 0.0, -1e-22), 2e-23, 0.1, 1.05e-22);
+    is_listed(Vec3::new(0.0, 0.0, -1e-20), 6.7e-21, 0.1, 1.6e-20);
+}
+
+#[test]
+fn spheres_whose_squares_are_infinite_are_listed() {
+    is_listed(Vec3::ZERO, 1e20, 1.0, 1e19);
+    is_listed(Vec3::ZERO, 1e20, 1.0, 1e30);
+}
+
+#[test]
+fn smallest_ellipsoid_touches_a_tile_far_off_the_axis() {
+    let ellipsoid = Ellipsoid::new(Vec3::ZERO, Mat3::IDENTITY, Vec3::splat(1.2e-38));
+    let stretch = Stretch::new(&ellipsoid.expect("positive"), &camera_from(Vec3::ZERO));
+    let tile = TileRectangle::new(Vec2::new(20.0, -1.0), Vec2::new(40.0, 1.0)).expect("in order");
+    let depths = DepthInterval::new(0.0, 1.0).expect("in order");
+    let stretch = stretch.expect("not empty");
+    assert!(stretch.touches(&tile, &depths) && stretch.touches_exactly(&tile, &depths));
 }

@@ -124,7 +124,7 @@ impl<S: Simd> Ellipsoids<S> {
         let rounding = rounding_before::<S>(center, longest, view.of_ellipsoid)
             + view.rounding_of_terms(terms);
         let tilt = longest * view.of_tilt;
-        let enlarged = round_up::<S>(shortest + (rounding + tilt), 4).max(f32::MIN_POSITIVE);
+        let enlarged = round_up::<S>(shortest + (rounding + tilt), 4).max(Stretch::LEAST_SEMI_AXIS);
         let factor = S::f32s::splat(simd, 1.0) / enlarged;
 
         let [xx, xy, xz] = [xx * factor, xy * factor, xz * factor];
@@ -213,8 +213,9 @@ impl<S: Simd> Spheres<S> {
         let rounding = rounding_before::<S>(center, self.radius, view.of_sphere);
         let rounding = rounding + view.rounding_of_anchor;
         let scaling = self.radius * view.of_scaling;
-        let enlarged = round_up::<S>(self.radius + rounding + scaling, 8);
-        let finite = enlarged.is_finite();
+        let enlarged = round_up::<S>(self.radius + rounding + scaling, 10);
+        let finite = (enlarged * enlarged).is_finite();
+        let enlarged = enlarged.max(CameraSphere::LEAST_RADIUS);
         let squared = enlarged * enlarged;
         let [zero, infinite] = splat(simd, [0.0, f32::INFINITY]);
         let radius = round_up::<S>(finite.select(enlarged, infinite), 4);
