@@ -127,7 +127,7 @@ fn bias_panel(name: &str, rows: &[Row]) -> Panel {
     if let Some(unbiased) = series.first_mut() {
         "all culling, unbiased".clone_into(&mut unbiased.name);
         unbiased.look = Look {
-            color: 2,
+            color: 7,
             line: Line::Solid,
         };
     }

@@ -74,9 +74,6 @@ fn settings() -> Vec<Setting> {
         Test::Exact,
         Test::ExactAndHalfSpace,
     ];
-    let slicings = [Slicing::Whole, Slicing::HalfZ, Slicing::ModifiedHalfZ]
-        .into_iter()
-        .chain([1, 2, 4, 8, 16, 32].map(Slicing::Slices));
     let mut settings = Vec::new();
     for base in [papers, tight] {
         settings.extend(tests.map(|test| Setting { test, ..base }));
@@ -87,12 +84,18 @@ fn settings() -> Vec<Setting> {
         family,
         ..tight
     }));
-    let family = "tight, each slicing";
-    settings.extend(slicings.map(|slicing| Setting {
-        slicing,
-        family,
-        ..tight
-    }));
+    let around_surfaces = [Slicing::Whole, Slicing::HalfZ, Slicing::ModifiedHalfZ];
+    let slices = [1, 2, 4, 8, 16, 32].map(Slicing::Slices);
+    for (family, slicings) in [
+        (AROUND_SURFACES, &around_surfaces[..]),
+        (SLICES, &slices[..]),
+    ] {
+        settings.extend(slicings.iter().map(|slicing| Setting {
+            slicing: *slicing,
+            family,
+            ..tight
+        }));
+    }
     let slicing = Slicing::Slices(cluster::SLICES);
     let (test, family) = (Test::Raster, "raster clusters");
     settings.push(Setting {
@@ -103,6 +106,9 @@ fn settings() -> Vec<Setting> {
     });
     settings
 }
+
+const AROUND_SURFACES: &str = "tight, around surfaces";
+const SLICES: &str = "tight, slices of depth";
 
 fn name_of(slicing: Slicing) -> String {
     match slicing {
@@ -162,7 +168,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
             ]);
             let label = match setting.family {
                 "tight, each tile width" => setting.tile.to_string(),
-                "tight, each slicing" => name_of(setting.slicing).replace(" slices", ""),
+                AROUND_SURFACES | SLICES => name_of(setting.slicing).replace(" slices", ""),
                 _ => setting.test.name().into(),
             };
             let point = Point::new(ns, 100.0 * in_vain).labelled(label);
