@@ -27,6 +27,9 @@
 //! the frustum is s z at one of both depths, s = R·(x a + y b + d) − |R·a| Δx − |R·b| Δy with x and y
 //! in the middle. Any R will do, so no rounding of the search counts, and that of the plane, in `f64`,
 //! is 10⁻⁷ of what the box test's in `f32` has been paid for: see `ARCHITECTURE.md`.
+//!
+//! So far it is one function over a [`Number`], with which a culler takes the first look at many lights at
+//! once. Where that leaves a light open, the search goes on for it alone.
 
 #![allow(
     clippy::inline_always,

@@ -127,8 +127,8 @@ fn bias_panel(name: &str, rows: &[Row]) -> Panel {
     if let Some(unbiased) = series.first_mut() {
         "all culling, unbiased".clone_into(&mut unbiased.name);
         unbiased.look = Look {
-            color: 7,
-            line: Line::Solid,
+            color: NO_CULLING_LOOK.color,
+            line: Line::Dashed,
         };
     }
     Panel {
