@@ -239,8 +239,8 @@ impl Camera {
         Vec3::new(coordinate(0), coordinate(1), coordinate(2))
     }
 
-    /// What [`to_camera_space`](Self::to_camera_space) gives, but in `f32` alone: off by at most 9u of its length and
-    /// [`rounding_of_anchor`](Self::rounding_of_anchor), wherever the world's origin is.
+    /// What [`to_camera_space`](Self::to_camera_space) gives, but in `f32` alone: off by at most 9u of its
+    /// length and [`rounding_of_anchor`](Self::rounding_of_anchor), wherever the world's origin is.
     #[inline]
     pub(crate) fn seen_from_anchor(&self, point: Vec3) -> Vec3 {
         self.rotation * (point - self.anchor) + self.anchor_seen

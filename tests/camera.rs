@@ -78,11 +78,20 @@ proptest! {
 
         let center = (eye + direction * distance).to_f32();
         let sphere = Sphere::new(center, 1.0).unwrap();
-        let seen = Vector::from(CameraSphere::new(&sphere, &camera).unwrap().center());
+        let shape = CameraSphere::new(&sphere, &camera).unwrap();
+        let seen = Vector::from(shape.center());
         let exact = view.to_camera_space(Vector::from(center));
         let of_origin = f64::from(view.from_world.w_axis.truncate().length());
         let rounding = UNIT_ROUNDOFF * (9.0 * exact.length() + 64.0 * UNIT_ROUNDOFF * of_origin);
         prop_assert!((seen - exact).length() <= rounding);
+
+        // It grows by that and by what a tile's box rounds, no more; 20 is the widest secant drawn, and
+        // the sum of coordinates is √3 times a length at most.
+        let distance = exact.length();
+        let of_origin = 64.0 * UNIT_ROUNDOFF * of_origin;
+        let margin = UNIT_ROUNDOFF * (20.0 + 16.0 * distance + 40.0 * (distance + 1.0) + of_origin);
+        let radius = f64::from(shape.radius_squared()).sqrt();
+        prop_assert!(1.0 <= radius && radius <= 1.0 + margin, "{radius}, {margin}");
     }
 }
 

@@ -8,9 +8,9 @@ use super::batch::{Chunk, grow};
 use super::exact::list_exactly;
 use super::filter::filter;
 use super::lanes::{parts, splat, store};
-use super::list::{Row, list};
 use super::shape::{BatchShape, TileLanes};
 use super::tile_depths::{Area, NONE};
+use super::tile_list::{Row, list};
 use super::{CullCounters, LightBatch, LightLists, TileDepths};
 
 /// The memory of a culler.

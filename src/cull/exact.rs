@@ -4,9 +4,9 @@ use fearless_simd::{Simd, SimdBase, SimdMask};
 
 use super::batch::Chunk;
 use super::lanes::{LANES, load, parts};
-use super::list::{Row, find};
 use super::shape::{BatchShape, TileLanes};
-use super::wide::Wide;
+use super::tile_list::{Row, find};
+use super::wide_lanes::Wide;
 use super::{LightBatch, LightLists};
 use crate::tile::Frustum;
 

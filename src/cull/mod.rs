@@ -32,13 +32,13 @@ mod depth_order;
 mod exact;
 mod filter;
 mod lanes;
-mod list;
 mod lists;
 #[cfg(feature = "rayon")]
 mod parallel;
 mod shape;
 mod tile_depths;
-mod wide;
+mod tile_list;
+mod wide_lanes;
 
 pub use batch::LightBatch;
 pub use build::{BatchBound, BatchBuilder, BatchLobe};

@@ -9,7 +9,7 @@ use super::source::{Fours, Frame, OfShape, Place, Source, four, scale};
 use super::vector::{Vectors, cross, dot, length, round_up};
 use crate::bound::AXIS_TILT_RADIANS;
 use crate::cull::lanes::LANES;
-use crate::cull::wide::Wide;
+use crate::cull::wide_lanes::Wide;
 use crate::{Bound, Fresnel, GgxLobe, MaskingShadowing, Spheroid, Stretch, Vpl, Xi};
 
 impl<F: Fresnel, G: MaskingShadowing> Source for GgxLobe<F, G> {

@@ -12,7 +12,7 @@ use super::vector::{Vectors, cross, fifth_power, length, round_up};
 use super::view::Ellipsoids;
 use crate::bound::table::{self, Axis};
 use crate::cull::lanes::{LANES, load_fours, splat};
-use crate::cull::wide::Wide;
+use crate::cull::wide_lanes::Wide;
 use crate::tile::Number;
 use crate::{Fresnel, FresnelMajorant, GgxLobe, MaskingShadowing, Stretch, Vpl, Xi, math};
 

@@ -6,7 +6,7 @@ use core::ops::{Add, Mul, Sub};
 use fearless_simd::{Simd, SimdBase, SimdFloat};
 use glam::{Mat3, Vec3};
 
-use crate::cull::wide::Wide;
+use crate::cull::wide_lanes::Wide;
 use crate::math;
 use crate::tile::Number;
 
