@@ -19,7 +19,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use stochastic_light_culling::{
-    Culler, DepthInterval, LightBatch, LightLists, Stretch, TileDepths, TileRectangle, TileTest,
+    Culler, DepthInterval, LightBatch, LightLists, ProjectedEllipsoid, TileDepths, TileRectangle,
 };
 use workload::{Depths, Subregion};
 
@@ -27,7 +27,7 @@ const KINDS: [(&str, Depths); 2] = [("W1", |tile| tile.scattered), ("W1c", |tile
 
 /// A subregion, made ready.
 struct Ready {
-    batch: LightBatch<Stretch>,
+    batch: LightBatch<ProjectedEllipsoid>,
     tiles: TileDepths,
     lists: LightLists,
 }
@@ -48,7 +48,7 @@ fn ready(frame: &[Subregion], depths: Depths) -> Vec<Ready> {
     frame.iter().map(ready).collect()
 }
 
-fn cull_all(culler: &mut Culler<Stretch>, frame: &mut [Ready]) {
+fn cull_all(culler: &mut Culler<ProjectedEllipsoid>, frame: &mut [Ready]) {
     for Ready {
         batch,
         tiles,
@@ -106,7 +106,10 @@ fn growth(criterion: &mut Criterion) {
 }
 
 /// All pairs of a light and a tile that pass the box test.
-fn pairs(frame: &[Subregion], depths: Depths) -> Vec<(Stretch, TileRectangle, DepthInterval)> {
+fn pairs(
+    frame: &[Subregion],
+    depths: Depths,
+) -> Vec<(ProjectedEllipsoid, TileRectangle, DepthInterval)> {
     let camera = workload::camera();
     let mut pairs = Vec::new();
     for Subregion { lights, tiles } in frame {

@@ -11,10 +11,10 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, Bound, Bounded, Camera, CameraSphere, Conductor,
-    DepthInterval, Dielectric, Direction, Ellipsoid, Fresnel, Ggx, GgxLobe, Interleave,
-    LambertLobe, Lobe, NoFresnel, PhongLobe, PixelRectangle, Proxy, Roulette, Schlick, Stretch,
-    TileGrid, TileTest, Vpl, Xi,
+    AnisotropicGgx, AnisotropicGgxLobe, Bounded, Camera, Conductor, DepthInterval, Dielectric,
+    Direction, Ellipsoid, FrameSeed, Fresnel, Ggx, GgxLobe, Incidence, Interleave, LambertLobe,
+    Lobe, NoFresnel, Paper, PhongLobe, Proxy, Roulette, Schlick, Shape, Spheroid, Tight, TileGrid,
+    Triaxial, Vpl, Xi,
     glam::{Mat3, Vec3},
     stretch_matrix, stretch_rotation,
 };
@@ -23,9 +23,9 @@ const LIGHTS: u32 = 1024;
 
 type Group<'a> = BenchmarkGroup<'a, criterion::measurement::WallTime>;
 
-/// `number` of light `light`, in [−1, 1].
-fn random(light: u32, number: u32) -> f32 {
-    2.0 * Xi::hashed(light, number, 1).get() - 1.0
+/// The random number of `light` in `frame`, in [−1, 1].
+fn random(light: u32, frame: u32) -> f32 {
+    2.0 * FrameSeed { frame, seed: 1 }.xi(light).get() - 1.0
 }
 
 fn random_vector(light: u32, first: u32) -> Vec3 {
@@ -36,12 +36,16 @@ fn direction(vector: Vec3) -> Direction {
     Direction::new(vector).expect("random vectors are not zero")
 }
 
-fn glossy_light<F: Fresnel>(light: u32, fresnel: F) -> Vpl<GgxLobe<F>> {
+fn incidence(light: u32) -> Incidence {
     let normal = direction(random_vector(light, 0));
     let incoming = direction(*normal + 0.9 * random_vector(light, 3));
+    Incidence { normal, incoming }
+}
+
+fn glossy_light<F: Fresnel>(light: u32, fresnel: F) -> Vpl<GgxLobe<F>> {
     let roughness = [0.05, 0.1, 0.2, 0.4][light as usize % 4];
     let ggx = Ggx::new(roughness).expect("in range");
-    let lobe = GgxLobe::new(ggx, fresnel, normal, incoming);
+    let lobe = GgxLobe::new(ggx, fresnel, incidence(light));
     Vpl::new(10.0 * random_vector(light, 6), 1.0, lobe).expect("in range")
 }
 
@@ -55,11 +59,10 @@ fn brushed_lights() -> Vec<Vpl<AnisotropicGgxLobe<Schlick>>> {
     let fresnel = Schlick::new(0.9).expect("in range");
     let light = |light| {
         let like = glossy_light(light, fresnel);
-        let (normal, incoming) = (like.lobe().normal(), like.lobe().incoming());
         let along = like.lobe().ggx().roughness();
         let brushed = AnisotropicGgx::new(along, 0.3 * along).expect("in range");
         let tangent = direction(random_vector(light, 9));
-        let lobe = AnisotropicGgxLobe::new(brushed, fresnel, normal, tangent, incoming)
+        let lobe = AnisotropicGgxLobe::new(brushed, fresnel, incidence(light), tangent)
             .expect("random vectors are not parallel");
         Vpl::new(like.position(), 1.0, lobe).expect("in range")
     };
@@ -76,10 +79,8 @@ fn diffuse_lights() -> Vec<Vpl<LambertLobe>> {
 
 fn phong_lights(exponents: [f32; 4]) -> Vec<Vpl<PhongLobe>> {
     let light = |i| {
-        let normal = direction(random_vector(i, 0));
-        let incoming = direction(*normal + 0.9 * random_vector(i, 3));
         let exponent = exponents[i as usize % 4];
-        let lobe = PhongLobe::new(0.8, exponent, normal, incoming).expect("in range");
+        let lobe = PhongLobe::new(0.8, exponent, incidence(i)).expect("in range");
         Vpl::new(10.0 * random_vector(i, 6), 1.0, lobe).expect("in range")
     };
     (0..LIGHTS).map(light).collect()
@@ -94,12 +95,14 @@ fn roulette() -> Roulette {
     Roulette::new(0.001).expect("in range")
 }
 
-fn spheroids() -> Vec<stochastic_light_culling::Spheroid> {
-    glossy_lights(NoFresnel)
-        .iter()
-        .zip(0..)
-        .map(|(light, i)| light.bound(&roulette(), Xi::hashed(i, 0, 0)))
-        .collect()
+fn xi(light: u32) -> Xi {
+    FrameSeed { frame: 0, seed: 0 }.xi(light)
+}
+
+fn spheroids() -> Vec<Spheroid> {
+    let lights = glossy_lights(NoFresnel);
+    let bound = |(light, i): (&Vpl<GgxLobe>, u32)| light.bound_by(Paper, &roulette(), xi(i));
+    lights.iter().zip(0..).map(bound).collect()
 }
 
 /// Times `step` over all of `inputs`, per input.
@@ -164,14 +167,10 @@ fn brdf(criterion: &mut Criterion) {
 
 fn range(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("range");
-    let numbers: Vec<u32> = (0..LIGHTS).collect();
-    per_item(&mut group, "hash", &numbers, |light| {
-        Xi::hashed(*light, 7, 1)
-    });
-    let xis: Vec<Xi> = numbers
-        .iter()
-        .map(|light| Xi::hashed(*light, 7, 1))
-        .collect();
+    let lights: Vec<u32> = (0..LIGHTS).collect();
+    let seed = FrameSeed { frame: 7, seed: 1 };
+    per_item(&mut group, "hash", &lights, |light| seed.xi(*light));
+    let xis: Vec<Xi> = lights.iter().map(|light| seed.xi(*light)).collect();
     let roulette = roulette();
     per_item(&mut group, "scale", &xis, |xi| roulette.scale(1.0, *xi));
     per_item(&mut group, "estimate", &xis, |xi| {
@@ -186,10 +185,10 @@ fn bound(criterion: &mut Criterion) {
         &mut group,
         "spheroid, no Fresnel",
         &glossy_lights(NoFresnel),
-        |light| light.lobe().unit_bound(),
+        |light| light.lobe().unit_bound_by(Paper),
     );
     per_item(&mut group, "spheroid, Schlick", &metal, |light| {
-        light.lobe().unit_bound()
+        light.lobe().unit_bound_by(Paper)
     });
     per_item(&mut group, "sphere, Lambert", &diffuse_lights(), |light| {
         light.lobe().unit_bound()
@@ -198,7 +197,7 @@ fn bound(criterion: &mut Criterion) {
         &mut group,
         "ellipsoid, Lambert",
         &diffuse_lights(),
-        |light| light.lobe().tight_bound(),
+        |light| light.lobe().unit_bound_by(Tight),
     );
     for (name, exponents) in [
         ("ellipsoid, Phong n < 2", [0.1, 0.5, 1.0, 1.9]),
@@ -210,7 +209,7 @@ fn bound(criterion: &mut Criterion) {
     }
     let tight: Vec<_> = diffuse_lights()
         .iter()
-        .map(|light| light.lobe().tight_bound())
+        .map(|light| light.lobe().unit_bound_by(Tight))
         .collect();
     for (name, proxy) in [
         ("proxy of 20 triangles", Proxy::Icosahedron),
@@ -226,19 +225,19 @@ fn bound(criterion: &mut Criterion) {
         &mut group,
         "tight ellipsoid, no Fresnel",
         &glossy_lights(NoFresnel),
-        |light| light.lobe().tight_bound(),
+        |light| light.lobe().unit_bound_by(Tight),
     );
     per_item(&mut group, "tight ellipsoid, Schlick", &metal, |light| {
-        light.lobe().tight_bound()
+        light.lobe().unit_bound_by(Tight)
     });
     per_item(
         &mut group,
         "triaxial ellipsoid, no Fresnel",
         &glossy_lights(NoFresnel),
-        |light| light.lobe().triaxial_bound(),
+        |light| light.lobe().unit_bound_by(Triaxial),
     );
     per_item(&mut group, "triaxial ellipsoid, Schlick", &metal, |light| {
-        light.lobe().triaxial_bound()
+        light.lobe().unit_bound_by(Triaxial)
     });
     per_item(
         &mut group,
@@ -249,7 +248,7 @@ fn bound(criterion: &mut Criterion) {
     per_item(&mut group, "extent along a direction", &metal, |light| {
         light.lobe().extent(Direction::X)
     });
-    let unit = metal[0].lobe().unit_bound();
+    let unit = metal[0].lobe().unit_bound_by(Paper);
     per_item(&mut group, "placing", &metal, |light| {
         unit.placed(light.position(), 3.0)
     });
@@ -273,7 +272,7 @@ fn stretch(criterion: &mut Criterion) {
         Ellipsoid::from(*s)
     });
     per_item(&mut group, "triangular form", &ellipsoids, |e| {
-        Stretch::new(e, &camera)
+        e.project(&camera)
     });
     per_item(&mut group, "product of B and S", &ellipsoids, |e| {
         stretch_as_product(e, &camera)
@@ -286,13 +285,13 @@ fn stretches_of_the_direct_port(camera: &Camera, count: usize) -> Vec<direct_por
     let stretch = |(light, i): (&Vpl<GgxLobe>, u32)| {
         let light = direct_port::Light {
             position: light.position(),
-            normal: *direction(random_vector(i, 0)),
-            incoming: *direction(*direction(random_vector(i, 0)) + 0.9 * random_vector(i, 3)),
+            normal: *incidence(i).normal,
+            incoming: *incidence(i).incoming,
             alpha: light.lobe().ggx().roughness(),
             fresnel: direct_port::Fresnel::None,
             flux: light.flux(),
             delta: roulette().delta(),
-            xi: Xi::hashed(i, 0, 0).get(),
+            xi: xi(i).get(),
         };
         direct_port::Stretched::new(&light.ellipsoid(), view, offset)
     };
@@ -303,19 +302,16 @@ fn stretches_of_the_direct_port(camera: &Camera, count: usize) -> Vec<direct_por
 fn tile(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("tile");
     let (camera, spheroids) = (camera(), spheroids());
-    let pixels = PixelRectangle {
-        min: [7, 5],
-        max: [8, 6],
-    };
-    let rectangle = camera.tile_rectangle([15, 9], pixels);
+    let grid = TileGrid::new([15, 9], 1).expect("not empty");
+    let rectangle = camera.tile(&grid, [7, 5]);
     let depths = DepthInterval::new(20.0, 26.0).expect("in order");
     let stretches: Vec<_> = spheroids
         .iter()
-        .filter_map(|spheroid| Stretch::new(&Ellipsoid::from(*spheroid), &camera))
+        .filter_map(|spheroid| spheroid.project(&camera))
         .collect();
     let spheres: Vec<_> = spheroids
         .iter()
-        .filter_map(|spheroid| CameraSphere::new(&spheroid.enclosing_sphere(), &camera))
+        .filter_map(|spheroid| spheroid.enclosing_sphere().project(&camera))
         .collect();
     per_item(&mut group, "ellipsoid", &stretches, |light| {
         light.touches(&rectangle, &depths)
@@ -332,7 +328,7 @@ fn tile(criterion: &mut Criterion) {
     let grid = TileGrid::new([240, 135], 16).expect("not empty");
     let tiles: Vec<_> = grid.tiles().collect();
     per_item(&mut group, "rectangle", &tiles, |tile| {
-        camera.tile_rectangle([240, 135], grid.pixels(*tile))
+        camera.tile(&grid, *tile)
     });
     let buffer: Vec<f32> = (0..256).map(|i| 20.0 + 3.0 * random(i, 0)).collect();
     per_item(

@@ -15,6 +15,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
+use command::say;
 use light_pass::LightPass;
 use stochastic_light_culling::Error;
 use world::{Handedness, World, lights};
@@ -65,9 +66,9 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let camera = world.camera(0)?;
     let mut pass = LightPass::new(lights, arguments.delta, &camera, SIZE, TILE_SIZE)?;
 
-    println!(
+    say(format_args!(
         "frame  in reach  lights/tile  most  tile tests  block tests  empty  radiance      ms"
-    );
+    ));
     for frame in 0..arguments.frames {
         let camera = world.camera(frame)?;
         let depth_buffer = world.draw_depths(&camera);
@@ -78,14 +79,17 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         let radiance = pass.radiance(&camera, depth_buffer, WATCHED_PIXEL, frame);
         let lengths = pass.list_lengths();
         let (tiles, most) = (lengths.clone().count(), lengths.max().unwrap_or(0));
-        println!(
+        let is_read = say(format_args!(
             "{frame:>5}  {:>8}  {:>11.1}  {most:>4}  {:>10}  {:>11}  {:>5}  {radiance:>8.4}  {milliseconds:>6.2}",
             pass.lights_in_reach(),
             counters.pairs as f64 / tiles as f64,
             counters.tile_tests,
             counters.block_tests,
             counters.empty,
-        );
+        ));
+        if !is_read {
+            break;
+        }
     }
     Ok(())
 }

@@ -12,15 +12,16 @@ mod arguments;
 mod command;
 mod frame;
 mod output;
+#[path = "render/positions.rs"]
+mod positions;
 mod scene;
 
-use std::io;
-use std::io::Write;
 use std::process::ExitCode;
 
 use stochastic_light_culling::{Camera, Error, Interleave, TileGrid, glam::Vec3};
 
 use arguments::{Arguments, ReferenceKind};
+use command::say;
 use frame::{Frame, Lights, Measured, Reference, Slicing, Tiles, Tiling, timed};
 use output::{Exposure, Request, Results, Row, make_folder, progress};
 use scene::{LitPoints, Scene, SurfaceBuffer, Tracer};
@@ -36,10 +37,11 @@ fn render(arguments: &Arguments) -> Result<(), String> {
     TileGrid::new(arguments.size, arguments.tile).map_err(said)?;
     let scene = Scene::load(&arguments.scene, &arguments.glossy)?;
     let camera = scene.viewpoint.camera(arguments.size).map_err(said)?;
-    make_folder(&arguments.out)?;
-
     let tracer = Tracer::new(&scene.mesh);
     let (surfaces, surfaces_ms) = timed(|| SurfaceBuffer::new(&tracer, &camera, arguments.size));
+    positions::check(arguments, &scene, &camera, &surfaces)?;
+    make_folder(&arguments.out)?;
+
     let (points, points_ms) = timed(|| {
         let photons = scene::trace_photons(&tracer, &scene.spot, arguments.vpls, arguments.seed);
         LitPoints::new(
@@ -107,11 +109,8 @@ fn render(arguments: &Arguments) -> Result<(), String> {
         diffuse: row(&surfaces, &diffuse, diffuse_error),
         steps,
     };
-    match report(arguments, &results) {
-        // Whoever reads has read enough.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        outcome => outcome.map_err(|error| format!("cannot report: {error}")),
-    }
+    report(arguments, &results);
+    Ok(())
 }
 
 /// The frame by its glossy lights, with each bound asked for, and by its diffuse lights.
@@ -255,7 +254,7 @@ fn row(surfaces: &SurfaceBuffer, measured: &Measured, rmse: Option<f64>) -> Row 
 }
 
 /// The table on standard output, or on standard error with JSON on standard output.
-fn report(arguments: &Arguments, results: &Results) -> io::Result<()> {
+fn report(arguments: &Arguments, results: &Results) {
     let request = Request {
         scene: &arguments.scene,
         alpha: arguments.alpha.roughness(),
@@ -267,10 +266,10 @@ fn report(arguments: &Arguments, results: &Results) -> io::Result<()> {
     };
     let table = output::table(&request, results);
     if arguments.json {
-        writeln!(io::stderr(), "{table}")?;
-        writeln!(io::stdout(), "{}", output::json(&request, results))
+        eprintln!("{table}");
+        say(format_args!("{}", output::json(&request, results)));
     } else {
-        writeln!(io::stdout(), "{table}")?;
-        writeln!(io::stdout(), "\npictures: {}", arguments.out.display())
+        let pictures = arguments.out.display();
+        say(format_args!("{table}\n\npictures: {pictures}"));
     }
 }

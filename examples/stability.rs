@@ -35,6 +35,7 @@ use rayon::prelude::*;
 
 use arguments::Arguments;
 use cell::Cell;
+use command::say;
 use tally::Tally;
 
 fn main() -> ExitCode {
@@ -65,8 +66,8 @@ fn run(arguments: &Arguments) {
     let text = report::text(&tallies, &thin);
     if arguments.json {
         eprintln!("{text}");
-        println!("{}", report::json(&tallies));
+        say(format_args!("{}", report::json(&tallies)));
     } else {
-        println!("{text}");
+        say(format_args!("{text}"));
     }
 }

@@ -24,6 +24,7 @@ use clap::Parser;
 use rayon::prelude::*;
 
 use certificate::Cell;
+use command::say;
 
 /// The table of smallest ellipsoids behind the tight bound.
 #[derive(Parser)]
@@ -67,7 +68,9 @@ fn prove(arguments: &Arguments) -> Result<(), String> {
     let boxes: usize = results.iter().filter_map(|r| r.as_ref().ok()).sum();
     let doubts = results.iter().filter(|r| r.is_err()).count();
     let seconds = start.elapsed().as_secs();
-    println!("{count} cells, {doubts} in doubt, {boxes} boxes, {seconds} s");
+    say(format_args!(
+        "{count} cells, {doubts} in doubt, {boxes} boxes, {seconds} s"
+    ));
     if doubts == 0 {
         Ok(())
     } else {

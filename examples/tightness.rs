@@ -16,6 +16,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use rayon::prelude::*;
 
+use command::say;
 use tightness::{DIELECTRICS, METALS, Place, Volumes};
 
 /// Volumes of the bounds of a GGX lobe over that of the paper's spheroid.
@@ -36,7 +37,9 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) {
     let classes = [("metals", &METALS[..]), ("dielectrics", &DIELECTRICS[..])];
     if arguments.csv {
-        println!("alpha,incidence_degrees,fresnel,tight,attainable");
+        say(format_args!(
+            "alpha,incidence_degrees,fresnel,tight,attainable"
+        ));
     }
     for (name, reflectances) in classes {
         let measured: Vec<(Place, Volumes)> = tightness::grid(reflectances)
@@ -53,37 +56,33 @@ fn run(arguments: &Arguments) {
 
 fn print_lines(measured: &[(Place, Volumes)]) {
     for (place, volumes) in measured {
-        println!(
+        say(format_args!(
             "{},{},{},{:.4},{:.4}",
             place.roughness, place.degrees, place.f0, volumes.tight, volumes.attainable
-        );
+        ));
     }
 }
 
 fn print_tables(name: &str, reflectances: &[f32], measured: &[(Place, Volumes)]) {
     for f0 in reflectances {
-        println!("F0 = {f0}: tight / attainable, the paper's spheroid being 1");
-        print!("{:>7}", "α");
-        for degrees in tightness::DEGREES {
-            print!("{:>13}", format!("{degrees}°"));
-        }
-        println!();
+        say(format_args!(
+            "F0 = {f0}: tight / attainable, the paper's spheroid being 1"
+        ));
+        let angles = tightness::DEGREES.map(|degrees| format!("{:>13}", format!("{degrees}°")));
+        say(format_args!("{:>7}{}", "α", angles.concat()));
         for roughness in tightness::ROUGHNESSES {
-            print!("{roughness:>7}");
             let row = measured
                 .iter()
                 .filter(|(place, _)| place.f0 == *f0 && place.roughness == roughness);
-            for (_, volumes) in row {
-                print!("{:>7.3}/{:<5.3}", volumes.tight, volumes.attainable);
-            }
-            println!();
+            let row = row.map(|(_, v)| format!("{:>7.3}/{:<5.3}", v.tight, v.attainable));
+            say(format_args!("{roughness:>7}{}", row.collect::<String>()));
         }
-        println!();
+        say(format_args!(""));
     }
     let ratios = || measured.iter().map(|(_, v)| v.tight / v.attainable);
-    println!(
+    say(format_args!(
         "{name}: {:.3} times the attainable in the mean, {:.3} at most\n",
         ratios().sum::<f64>() / measured.len() as f64,
         ratios().fold(0.0, f64::max)
-    );
+    ));
 }

@@ -12,44 +12,44 @@
 //! |---|---|---|---|
 //! | lobe | surface, incoming direction | what it reflects | [`GgxLobe`], [`AnisotropicGgxLobe`], [`LambertLobe`], [`PhongLobe`], [`ConstantLobe`] |
 //! | light | lobe, position, flux | radiant intensity | [`Vpl`] |
-//! | range | intensity, ξ | probability, range, estimate | [`Roulette`], [`Xi`] |
-//! | bound | lobe, range | shape around all it may light | [`Spheroid`], [`Sphere`], [`Ellipsoid`]; [`Proxy`] to rasterise it |
-//! | stretch | bound, camera | unit sphere | [`Stretch`], [`CameraSphere`], [`HalfSpace`] |
-//! | tile | pixels, depths | touched or not | [`TileGrid`], [`DepthInterval`], [`TileTest`] |
-//! | cull | many lights, many tiles | a list of lights for each tile | `LightBatch`, `TileDepths`, `Culler`, `LightLists` (feature `cull`) |
+//! | range | intensity, ξ | probability, range, estimate | [`Roulette`], [`Xi`], [`FrameSeed`] |
+//! | bound | lobe, range | shape around all it may light | [`Ellipsoid`], [`Spheroid`], [`Sphere`] by [`Tight`], [`Triaxial`], [`Paper`]; [`HalfSpace`]; [`Proxy`] to rasterise it |
+//! | view | camera, image | tiles and their depths | [`Camera`], [`TileGrid`], [`DepthInterval`], [`Interleave`] |
+//! | project | bound, camera | unit sphere in camera space | [`ProjectedEllipsoid`], [`ProjectedSphere`], [`ProjectedHalfSpace`] |
+//! | touch | projected shape, tile | touched or not | [`ProjectedEllipsoid::touches`] |
+//! | cull | many lights, many tiles | a list of lights for each tile | `BatchBuilder`, `LightBatch`, `TileDepths`, `Culler`, `LightLists` (feature `cull`) |
 //!
 //! Each step can be used alone, and knows nothing of the steps after it.
 //!
 //! ```
 //! use stochastic_light_culling::{
-//!     Camera, DepthInterval, Direction, Ggx, GgxLobe, PixelRectangle, Roulette, Schlick, Stretch,
-//!     TileGrid, TileTest, Vpl, Xi, glam::Vec3,
+//!     Camera, DepthInterval, Direction, FrameSeed, Ggx, GgxLobe, Incidence, Roulette, Schlick,
+//!     TileGrid, Vpl, glam::Vec3,
 //! };
 //!
 //! // A point on a gold floor that a photon of 2 W reached from the upper left.
-//! let normal = Direction::Y;
-//! let incoming = Direction::new(Vec3::new(-1.0, 1.0, 0.0))?;
-//! let lobe = GgxLobe::new(Ggx::new(0.1)?, Schlick::new(0.9)?, normal, incoming);
+//! let incidence = Incidence {
+//!     normal: Direction::Y,
+//!     incoming: Direction::new(Vec3::new(-1.0, 1.0, 0.0))?,
+//! };
+//! let lobe = GgxLobe::new(Ggx::new(0.1)?, Schlick::new(0.9)?, incidence);
 //! let light = Vpl::new(Vec3::ZERO, 2.0, lobe)?;
 //!
-//! // How far it reaches in this frame, and a spheroid around that.
+//! // How far it reaches in this frame, and an ellipsoid around that.
 //! let roulette = Roulette::new(0.01)?;
-//! let xi = Xi::hashed(0, 0, 0); // light, frame, seed
+//! let xi = FrameSeed { frame: 0, seed: 0 }.xi(0);
 //! let bound = light.bound(&roulette, xi);
 //!
-//! // Before the camera it becomes a unit sphere,
+//! // In the space of the camera it becomes a unit sphere,
 //! let camera = Camera::look_at(Vec3::new(0.0, 2.0, 9.0), Vec3::Y, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
-//! let stretch = Stretch::new(&bound.into(), &camera).expect("light with flux reaches somewhere");
+//! let projected = bound.project(&camera).expect("light with flux reaches somewhere");
 //!
 //! // which is tested against the tiles and what they see between two depths.
 //! let grid = TileGrid::new([128, 128], 16)?;
 //! let depths = DepthInterval::new(7.0, 11.0)?;
 //! let touched = grid
 //!     .tiles()
-//!     .filter(|tile| {
-//!         let rectangle = camera.tile_rectangle([128, 128], grid.pixels(*tile));
-//!         stretch.touches(&rectangle, &depths)
-//!     })
+//!     .filter(|tile| projected.touches(&camera.tile(&grid, *tile), &depths))
 //!     .count();
 //! assert!(0 < touched && touched < 64);
 //!
@@ -79,7 +79,7 @@
 //! valid: nothing after them panics, allocates or makes NaN from finite arguments; but for culling, which
 //! allocates in its first frame, and `TileDepths`, which panics if asked about a tile that it does not
 //! have. A light that reflects nothing, because its flux is zero or it is lit from behind, is no error but
-//! has an empty range; it drops out before any tile is looked at ([`Stretch::new`] gives `None`).
+//! has an empty range; it drops out before any tile is looked at ([`Ellipsoid::project`] gives `None`).
 //!
 //! # No light is lost
 //!
@@ -90,10 +90,8 @@
 //! **If a tile, as the `f32` numbers of its rectangle and depth interval define it, contains a point p
 //! with ‖p − q‖ ≤ l_max(ω_o), in exact arithmetic on the `f32` numbers that were given, then
 //! [`touches`](TileTest::touches) and [`touches_exactly`](TileTest::touches_exactly) are true** of the
-//! stretched [`Spheroid`], of the triaxial ellipsoid, of the tight one from a table, of that of an
-//! anisotropic lobe, of both of the spheroid's spheres, of the ellipsoid of a [`PhongLobe`], of a diffuse
-//! or constant light's [`Sphere`], of a diffuse light's tight ellipsoid, and of the [`HalfSpace`] above
-//! the light's surface. Directions stand for the unit vectors along them, and a point of the world for
+//! projected bounds that [`Paper`], [`Triaxial`] and [`Tight`] give, of both of a spheroid's spheres, and of the
+//! [`HalfSpace`] above the light's surface. Directions stand for the unit vectors along them, and a point of the world for
 //! its image under the camera's matrix.
 //!
 //! This holds for every α from 2⁻²⁰ to 1, every μ > 0, ranges from 10⁻¹² to 10¹², lights up to 10⁶
@@ -101,16 +99,16 @@
 //! corners up to 89.7° off, lights around and behind the eye, and depth intervals of no thickness.
 //! Farther out a bound is merely large, the whole view if it must be, or 10⁻¹⁸ at least. The one step that is not proved
 //! is the quasi-convexity of [`Conductor`]'s F, which a search bears out. The ellipsoids of the table behind
-//! [`GgxLobe::tight_bound`], between whose knots it is interpolated, are proved to enclose by a computer,
+//! [`Tight`], between whose knots it is interpolated, are proved to enclose by a computer,
 //! box by box: `examples/tabulate -- --prove`.
 //!
 //! What it costs: at α ≥ 0.01, and r at least 10⁻³ of the distance to eye and origin, ellipsoids grow
 //! by less than 0.1 % in volume on average; at α = 10⁻⁶ by a large factor. `examples/stability` prints
-//! the table, `ARCHITECTURE.md` counts the roundings.
+//! the table, `docs/rounding.md` counts the roundings.
 //!
 //! # Scope
 //!
-//! Here: lobes and their bounds, roulette, the stretch, tile tests, interleaved sampling. Not here:
+//! Here: lobes and their bounds, roulette, projection, tile tests, culling, interleaved sampling. Not here:
 //! finding lit points, visibility, shading, denoising, GPU code, and anything that stores a scene;
 //! `examples/render.rs` shows one way to supply these.
 //!
@@ -126,7 +124,7 @@
 //!   intervals and interleaving can be saved, most under the names of their constructors' arguments, and
 //!   are read bit for bit. What is read goes through the constructors, and what they refuse is an error
 //!   with their words. Bounds, stretches, batches and lists, which follow from these, are made again.
-//! - `bytemuck`: `GpuStretch` and `GpuSphere`, lights as the records that a shader reads. The lists of
+//! - `bytemuck`: `GpuEllipsoid` and `GpuSphere`, lights as the records that a shader reads. The lists of
 //!   `LightLists` are such buffers as they are.
 //!
 //! # Sources
@@ -155,42 +153,49 @@ extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
+// In the order of the corridor: each room knows those above it.
+mod num;
+
+mod base;
+mod lobe;
+
+mod light;
+
 mod bound;
-mod brdf;
-mod camera;
+mod view;
+
+mod project;
+
+mod touch;
+
 #[cfg(feature = "cull")]
 mod cull;
-mod direction;
-mod error;
-#[cfg(feature = "bytemuck")]
-mod gpu;
-mod half_space;
-mod interleave;
-mod math;
-mod range;
-mod stretch;
-mod tile;
-#[cfg(feature = "serde")]
-mod unchecked;
-mod vpl;
-mod wide;
+#[cfg(any(feature = "bytemuck", feature = "serde"))]
+mod interop;
 
-// What a folder shows, its own `mod.rs` says.
-pub use bound::*;
-pub use brdf::*;
-pub use camera::Camera;
+pub use base::{Direction, Error};
+pub use bound::{
+    BoundStrategy, Bounded, Ellipsoid, HalfSpace, OwnBound, Paper, Proxy, Shape, Sphere, Spheroid,
+    Tight, Triaxial,
+};
 #[cfg(feature = "cull")]
-pub use cull::*;
-pub use direction::Direction;
-pub use error::Error;
+pub use cull::{
+    BatchBuilder, CullCounters, Culler, DepthOrder, LightBatch, LightLists, TileDepths,
+};
 #[cfg(feature = "bytemuck")]
-pub use gpu::{GpuSphere, GpuStretch};
-pub use half_space::HalfSpace;
-pub use interleave::Interleave;
-pub use range::{Roulette, Xi};
-pub use stretch::{CameraSphere, Stretch, stretch_matrix, stretch_rotation};
-pub use tile::*;
-pub use vpl::Vpl;
+pub use interop::{GpuEllipsoid, GpuSphere};
+pub use light::{FrameSeed, Roulette, Vpl, Xi};
+pub use lobe::{
+    AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel,
+    FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, Incidence, LambertLobe, Lobe,
+    MaskingShadowing, NoFresnel, PhongLobe, Schlick, Separable,
+};
+pub use project::{
+    Project, Projected, ProjectedBound, ProjectedEllipsoid, ProjectedHalfSpace, ProjectedSphere,
+    stretch_matrix, stretch_rotation,
+};
+pub use touch::{BoxTest, TileTest};
+pub use view::{Camera, DepthInterval, Interleave, PixelRectangle, TileGrid, TileRectangle};
 
 pub use glam;
 

@@ -2,8 +2,8 @@
 
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, DepthInterval, Dielectric,
-    Direction, Ellipsoid, Error, Ggx, Interleave, LambertLobe, NoFresnel, PhongLobe, Roulette,
-    Schlick, Sphere, TileGrid, TileRectangle, Vpl, Xi,
+    Direction, Ellipsoid, Error, Ggx, Incidence, Interleave, LambertLobe, NoFresnel, PhongLobe,
+    Roulette, Schlick, Sphere, TileGrid, TileRectangle, Vpl, Xi,
     glam::{Mat3, Mat4, Vec2, Vec3, Vec4},
 };
 
@@ -39,10 +39,24 @@ fn numbers_out_of_range() {
         LambertLobe::new(albedo, Direction::Z)
     });
     refuses(&[-0.1, 1.1], |albedo| {
-        PhongLobe::new(albedo, 20.0, Direction::Z, Direction::Z)
+        PhongLobe::new(
+            albedo,
+            20.0,
+            Incidence {
+                normal: Direction::Z,
+                incoming: Direction::Z,
+            },
+        )
     });
     refuses(&[-1e-45, -1.0, 1_048_577.0, 1e10], |exponent| {
-        PhongLobe::new(0.5, exponent, Direction::Z, Direction::Z)
+        PhongLobe::new(
+            0.5,
+            exponent,
+            Incidence {
+                normal: Direction::Z,
+                incoming: Direction::Z,
+            },
+        )
     });
     refuses(&[-1.0, 1e10], |exponent| {
         PhongLobe::about(0.5, exponent, Direction::Z)
@@ -105,7 +119,17 @@ fn roughness_is_named_by_its_axis() {
 fn tangents_along_the_normal() {
     let ggx = AnisotropicGgx::new(0.1, 0.5).unwrap();
     let normal = Direction::new(Vec3::new(0.3, -0.2, 0.7)).unwrap();
-    let lobe = |tangent| AnisotropicGgxLobe::new(ggx, NoFresnel, normal, tangent, Direction::Z);
+    let lobe = |tangent| {
+        AnisotropicGgxLobe::new(
+            ggx,
+            NoFresnel,
+            Incidence {
+                normal,
+                incoming: Direction::Z,
+            },
+            tangent,
+        )
+    };
     // In any direction and length before it was a unit vector, and when nothing but rounding is left.
     for scale in [1.0, -1.0, 1e-20, 3.3] {
         let along = Direction::new(scale * *normal).unwrap();
@@ -146,6 +170,14 @@ fn shapes_that_are_none() {
     assert!(TileRectangle::new(low, high).is_err());
     assert!(TileRectangle::new(low, Vec2::NAN).is_err());
     assert!(TileRectangle::new(Vec2::INFINITY, high).is_err());
+    assert!(TileRectangle::new(low, Vec2::new(1.0, 1e6)).is_ok());
+    let beyond = Vec2::new(1.0, 1_000_000.1);
+    for rectangle in [
+        TileRectangle::new(low, beyond),
+        TileRectangle::new(-beyond, low),
+    ] {
+        assert!(rectangle.unwrap_err().to_string().contains("1000000.1"));
+    }
 }
 
 #[test]
@@ -262,4 +294,75 @@ fn matrices_of_another_kind() {
     ] {
         assert!(Camera::new(Mat4::IDENTITY, wrong).is_err(), "{wrong}");
     }
+}
+
+/// Perspective matrices of each kind are accepted, and refused if they are stored by rows.
+#[test]
+fn transposed_projections() {
+    let clip_depths = |near: f32, far: f32| {
+        let depth = far - near;
+        [
+            [far / depth, -far * near / depth],
+            [-near / depth, far * near / depth],
+            [(far + near) / depth, -2.0 * far * near / depth],
+            [1.0, -near],
+            [0.0, near],
+            [1.0, -2.0 * near],
+        ]
+    };
+    let planes = [
+        [1e-3, 1e4],
+        [0.1, 100.0],
+        [0.3, 2.0],
+        [5.0, 6.0],
+        [1e3, 1e9],
+    ];
+    let edges = [[-0.5, 0.5], [-0.5, 0.8], [0.1, 0.9]];
+    let shapes = edges.map(|x| edges.map(|y| (x, y))).concat();
+    for [a, b] in planes.map(|[near, far]| clip_depths(near, far)).concat() {
+        for ((horizontal, vertical), (forward, flip)) in shapes.iter().flat_map(|shape| {
+            [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)].map(|way| (*shape, way))
+        }) {
+            let scale = |[low, high]: [f32; 2]| 2.0 / (high - low);
+            let shift = |[low, high]: [f32; 2]| -forward * (high + low) / (high - low);
+            let projection = Mat4::from_cols(
+                Vec4::new(scale(horizontal), 0.0, 0.0, 0.0),
+                Vec4::new(0.0, flip * scale(vertical), 0.0, 0.0),
+                Vec4::new(
+                    shift(horizontal),
+                    flip * shift(vertical),
+                    forward * a,
+                    forward,
+                ),
+                Vec4::new(0.0, 0.0, b, 0.0),
+            );
+            assert!(
+                Camera::new(Mat4::IDENTITY, projection).is_ok(),
+                "{projection}"
+            );
+            let transposed = Camera::new(Mat4::IDENTITY, projection.transpose());
+            let Err(error) = transposed else {
+                panic!("{projection} is accepted transposed");
+            };
+            let centred = [horizontal, vertical]
+                .into_iter()
+                .all(|[low, high]| low == -high);
+            let message = error.to_string();
+            if centred {
+                let element = format!("element (3, 2), found {b}");
+                assert!(message.contains(&element), "{message}");
+            }
+            assert!(message.contains("projection matrix"), "{message}");
+        }
+    }
+    let doubled = Mat4::from_cols(
+        Vec4::X,
+        Vec4::Y,
+        Vec4::new(0.0, 0.0, -2.0, -2.0),
+        Vec4::new(0.0, 0.0, -0.2, 0.0),
+    );
+    let message = Camera::new(Mat4::IDENTITY, doubled)
+        .unwrap_err()
+        .to_string();
+    assert!(message.contains("found -2"), "{message}");
 }

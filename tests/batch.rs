@@ -7,10 +7,11 @@ mod reference;
 use generators::{Lit, cases, log_uniform};
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BatchLobe, Bound, Bounded, Camera,
-    CameraSphere, Conductor, ConstantLobe, DepthOrder, Direction, Ellipsoid, Fresnel, Ggx, GgxLobe,
-    LambertLobe, LightBatch, MaskingShadowing, NoFresnel, Roulette, Schlick, Sphere, Spheroid,
-    Stretch, Vpl, Xi, glam::Vec3,
+    AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BoundStrategy, Bounded, BoxTest, Camera,
+    Conductor, ConstantLobe, DepthOrder, Dielectric, Direction, Ellipsoid, FrameSeed, Fresnel, Ggx,
+    GgxLobe, Incidence, LambertLobe, LightBatch, Lobe, MaskingShadowing, NoFresnel, OwnBound,
+    Paper, PhongLobe, Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Shape,
+    Sphere, Spheroid, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 
 /// What a light is made of, whatever its lobe.
@@ -26,13 +27,19 @@ struct Parts {
 }
 
 impl Parts {
-    fn vpl<L: BatchLobe>(&self, lobe: L) -> (Vpl<L>, Xi) {
+    fn vpl<L: Lobe>(&self, lobe: L) -> (Vpl<L>, Xi) {
         (Vpl::new(self.position, self.flux, lobe).unwrap(), self.xi)
     }
 
+    fn incidence(&self) -> Incidence {
+        let Lit {
+            normal, incoming, ..
+        } = self.lit;
+        Incidence { normal, incoming }
+    }
+
     fn ggx<F: Fresnel>(&self, fresnel: F) -> GgxLobe<F> {
-        let ggx = Ggx::new(self.roughness).unwrap();
-        GgxLobe::new(ggx, fresnel, self.lit.normal, self.lit.incoming)
+        GgxLobe::new(Ggx::new(self.roughness).unwrap(), fresnel, self.incidence())
     }
 
     fn conductor(&self) -> Conductor {
@@ -55,6 +62,7 @@ fn parts() -> impl Strategy<Value = Parts> {
     ];
     let xi = prop_oneof![
         20 => log_uniform(2.3e-10, 1.0).prop_map(|x| x as f32),
+        2 => log_uniform(1e-45, 2.3e-10).prop_map(|x| x as f32),
         1 => Just(1.0),
         1 => Just(f32::from_bits(1)),
     ];
@@ -97,6 +105,7 @@ struct Frame {
 fn frame() -> impl Strategy<Value = Frame> {
     let delta = prop_oneof![
         10 => log_uniform(1e-6, 1e3).prop_map(|x| x as f32),
+        2 => log_uniform(1e-45, 1e-6).prop_map(|x| x as f32),
         1 => Just(f32::from_bits(1)),
         1 => Just(f32::MAX),
     ];
@@ -115,7 +124,7 @@ trait Bits {
     fn bits(&self) -> Vec<u32>;
 }
 
-impl Bits for Stretch {
+impl Bits for ProjectedEllipsoid {
     fn bits(&self) -> Vec<u32> {
         let matrix = self.matrix().to_cols_array();
         let numbers = matrix.into_iter().chain(self.center().to_array());
@@ -123,7 +132,7 @@ impl Bits for Stretch {
     }
 }
 
-impl Bits for CameraSphere {
+impl Bits for ProjectedSphere {
     fn bits(&self) -> Vec<u32> {
         let numbers = self.center().to_array().into_iter();
         let numbers = numbers.chain([self.radius_squared()]);
@@ -134,7 +143,7 @@ impl Bits for CameraSphere {
 impl Frame {
     /// Whether `add` adds to a batch, of the lights in two parts, the shapes that are `expected`: `None`
     /// for a light that reaches nowhere.
-    fn same<T: stochastic_light_culling::BatchShape + Bits>(
+    fn same<T: BoxTest + Bits>(
         &self,
         expected: &[Option<T>],
         add: impl Fn(&BatchBuilder, std::ops::Range<usize>, &mut LightBatch<T>),
@@ -159,74 +168,96 @@ impl Frame {
         Ok(())
     }
 
-    fn same_ggx<F: Fresnel, G: MaskingShadowing>(
+    /// Whether a batch holds the shapes that each light has by itself, bounded by `strategy`.
+    fn same_lights<L, B>(
         &self,
-        lobe: impl Fn(&Parts) -> GgxLobe<F, G>,
-    ) -> Result<(), TestCaseError> {
-        let lights: Vec<_> = self.lights.iter().map(|p| p.vpl(lobe(p))).collect();
-        let numbered = |range: std::ops::Range<usize>| {
-            let numbers = range.start as u32..;
-            numbers
-                .zip(&lights[range])
-                .map(|(i, (light, xi))| (i, light, *xi))
-        };
-        let spheroids: Vec<_> = lights
-            .iter()
-            .map(|(light, xi)| light.bound(&self.roulette, *xi).into())
-            .map(|ellipsoid| Stretch::new(&ellipsoid, &self.camera))
-            .collect();
-        self.same(&spheroids, |builder, range, batch| {
-            builder.add(numbered(range), batch);
-        })?;
-        let tight: Vec<_> = lights
-            .iter()
-            .map(|(light, xi)| light.tight_bound(&self.roulette, *xi))
-            .map(|ellipsoid| Stretch::new(&ellipsoid, &self.camera))
-            .collect();
-        self.same(&tight, |builder, range, batch| {
-            builder.add_tight(numbered(range), batch);
-        })
-    }
-
-    fn same_spheres<L>(&self, lobe: impl Fn(&Parts) -> L) -> Result<(), TestCaseError>
-    where
-        L: BatchLobe<Bound = Sphere, Shape = CameraSphere>,
-    {
-        let lights: Vec<_> = self.lights.iter().map(|p| p.vpl(lobe(p))).collect();
-        let spheres: Vec<_> = lights
-            .iter()
-            .map(|(light, xi)| light.bound(&self.roulette, *xi))
-            .map(|sphere| CameraSphere::new(&sphere, &self.camera))
-            .collect();
-        self.same(&spheres, |builder, range, batch| {
-            let numbers = range.start as u32..;
-            let lights = numbers.zip(&lights[range]);
-            builder.add(lights.map(|(i, (light, xi))| (i, light, *xi)), batch);
-        })
-    }
-
-    /// Of bounds that are kept, with `expected` their shape if they are placed one by one.
-    fn same_placed<B, T>(
-        &self,
-        bounds: &[B],
-        shape: impl Fn(B) -> Option<T>,
+        strategy: B,
+        lobe: impl Fn(&Parts) -> L,
     ) -> Result<(), TestCaseError>
     where
-        B: stochastic_light_culling::BatchBound<Shape = T>,
-        T: stochastic_light_culling::BatchShape + Bits,
+        L: Lobe + 'static,
+        B: BoundStrategy<L, Shape: Project<Projected: BoxTest + Bits>>,
     {
+        let lights: Vec<_> = self.lights.iter().map(|p| p.vpl(lobe(p))).collect();
+        let expected: Vec<_> = lights
+            .iter()
+            .map(|(light, xi)| light.bound_by(strategy, &self.roulette, *xi))
+            .map(|bound| Project::project(&bound, &self.camera))
+            .collect();
+        self.same(&expected, |builder, range, batch| {
+            let indexed = (range.start as u32..).zip(&lights[range]);
+            let lights = indexed.map(|(i, (light, xi))| (i, light, *xi));
+            builder.add_by(strategy, lights, batch);
+        })
+    }
+
+    fn same_ggx<F: Fresnel, G: MaskingShadowing>(
+        &self,
+        lobe: impl Fn(&Parts) -> GgxLobe<F, G> + Copy,
+    ) -> Result<(), TestCaseError> {
+        self.same_lights(Paper, lobe)?;
+        self.same_lights(Triaxial, lobe)?;
+        self.same_lights(Tight, lobe)?;
+        self.same_lights(OwnBound, lobe)
+    }
+
+    /// Of bounds that are kept.
+    fn same_placed<B: Project<Projected: BoxTest + Bits> + 'static>(
+        &self,
+        bounds: &[B],
+    ) -> Result<(), TestCaseError> {
         let scale = |light: &Parts| self.roulette.scale(light.flux, light.xi);
         let placed = self.lights.iter().zip(bounds);
         let expected: Vec<_> = placed
-            .map(|(light, bound)| shape(bound.placed(light.position, scale(light))))
+            .map(|(light, bound)| bound.placed(light.position, scale(light)))
+            .map(|bound| Project::project(&bound, &self.camera))
             .collect();
         self.same(&expected, |builder, range, batch| {
             let placed = (range.start as u32..).zip(&self.lights[range.clone()]);
             let placed = placed.zip(&bounds[range]);
-            let placed = placed
-                .map(|((number, light), bound)| (number, bound, light.position, scale(light)));
+            let placed =
+                placed.map(|((index, light), bound)| (index, bound, light.position, scale(light)));
             builder.add_placed(placed, batch);
         })
+    }
+}
+
+/// A lobe that the crate does not know: a cosine within a window.
+#[derive(Clone, Copy)]
+struct Windowed(Direction);
+
+impl Lobe for Windowed {
+    fn value(&self, outgoing: Vec3) -> f32 {
+        let cosine = self.0.dot(outgoing);
+        if cosine > 0.5 { cosine } else { 0.0 }
+    }
+}
+
+impl Bounded for Windowed {
+    type Shape = Sphere;
+    type Strategy = OwnBound;
+
+    fn unit_bound(&self) -> Sphere {
+        Sphere::new(*self.0 * 0.5, 0.9).unwrap()
+    }
+}
+
+/// A Fresnel factor and a masking function of a caller's own.
+#[derive(Clone, Copy)]
+struct Coat(f32);
+
+impl Fresnel for Coat {
+    fn reflectance(&self, half_angle_cosine: f32) -> f32 {
+        self.0.max(0.04 + 0.96 * (1.0 - half_angle_cosine).powi(5))
+    }
+}
+
+#[derive(Clone, Copy)]
+struct MaskedAlone;
+
+impl MaskingShadowing for MaskedAlone {
+    fn over_four_incident_cosines(cosine: f32, root: f32, _: f32, _: f32) -> f32 {
+        0.5 / (cosine + root)
     }
 }
 
@@ -237,33 +268,44 @@ proptest! {
     fn glossy_lights(frame in frame()) {
         frame.same_ggx(|light| light.ggx(NoFresnel))?;
         frame.same_ggx(|light| light.ggx(Schlick::new(light.share).unwrap()))?;
+        frame.same_ggx(|light| light.ggx(Dielectric::new(0.5 + light.share).unwrap()))?;
         frame.same_ggx(|light| light.ggx(light.conductor()).separable())?;
+        frame.same_ggx(|light| light.ggx(Coat(light.share)).with_masking::<MaskedAlone>())?;
     }
 
     #[test]
     fn anisotropic_lights(frame in frame()) {
-        let lobe = |light: &Parts| {
-            let ggx = AnisotropicGgx::new(light.roughness, light.share.max(1e-3)).unwrap();
-            let tangent = Direction::new(light.lit.normal.any_orthonormal_vector()).unwrap();
-            let Lit { normal, incoming, .. } = light.lit;
-            AnisotropicGgxLobe::new(ggx, light.conductor(), normal, tangent, incoming).unwrap()
+        let ggx = |light: &Parts| {
+            // Now and then of the same roughness along and across.
+            let across = if light.share > 0.9 { light.roughness } else { light.share.max(1e-3) };
+            AnisotropicGgx::new(light.roughness, across).unwrap()
         };
-        let lights: Vec<_> = frame.lights.iter().map(|p| p.vpl(lobe(p))).collect();
-        let stretches: Vec<_> = lights
-            .iter()
-            .map(|(light, xi)| light.bound(&frame.roulette, *xi))
-            .map(|ellipsoid| Stretch::new(&ellipsoid, &frame.camera))
-            .collect();
-        frame.same(&stretches, |builder, range, batch| {
-            let lights = (range.start as u32..).zip(&lights[range]);
-            builder.add(lights.map(|(i, (light, xi))| (i, light, *xi)), batch);
+        let tangent = |light: &Parts| {
+            Direction::new(light.lit.normal.any_orthonormal_vector()).unwrap()
+        };
+        frame.same_lights(Triaxial, |light| {
+            AnisotropicGgxLobe::new(ggx(light), light.conductor(), light.incidence(), tangent(light))
+                .unwrap()
+        })?;
+        frame.same_lights(Triaxial, |light| {
+            AnisotropicGgxLobe::new(ggx(light), NoFresnel, light.incidence(), tangent(light))
+                .unwrap()
+                .separable()
         })?;
     }
 
     #[test]
-    fn diffuse_and_point_lights(frame in frame()) {
-        frame.same_spheres(|light| LambertLobe::new(light.share, light.lit.normal).unwrap())?;
-        frame.same_spheres(|_| ConstantLobe)?;
+    fn other_lights(frame in frame()) {
+        let lambert = |light: &Parts| LambertLobe::new(light.share, light.lit.normal).unwrap();
+        frame.same_lights(Paper, lambert)?;
+        frame.same_lights(Tight, lambert)?;
+        frame.same_lights(Paper, |_| ConstantLobe)?;
+        frame.same_lights(Tight, |light| {
+            // From flat to as narrow as may be.
+            let exponent = PhongLobe::MAX_EXPONENT * light.roughness.powi(4);
+            PhongLobe::new(light.share, exponent, light.incidence()).unwrap()
+        })?;
+        frame.same_lights(OwnBound, |light| Windowed(light.lit.normal))?;
     }
 
     #[test]
@@ -271,24 +313,23 @@ proptest! {
         let spheroids: Vec<Spheroid> = frame
             .lights
             .iter()
-            .map(|light| light.ggx(light.conductor()).unit_bound())
+            .map(|light| light.ggx(light.conductor()).unit_bound_by(Paper))
             .collect();
-        let stretch = |ellipsoid| Stretch::new(&ellipsoid, &frame.camera);
-        frame.same_placed(&spheroids, |spheroid| stretch(spheroid.into()))?;
+        frame.same_placed(&spheroids)?;
         let spheres: Vec<Sphere> = spheroids.iter().map(Spheroid::enclosing_sphere).collect();
-        frame.same_placed(&spheres, |sphere| CameraSphere::new(&sphere, &frame.camera))?;
+        frame.same_placed(&spheres)?;
         let ellipsoids: Vec<Ellipsoid> = frame
             .lights
             .iter()
-            .map(|light| light.ggx(NoFresnel).tight_bound())
+            .map(|light| light.ggx(NoFresnel).unit_bound())
             .collect();
-        frame.same_placed(&ellipsoids, stretch)?;
+        frame.same_placed(&ellipsoids)?;
         // Not around the origin.
         let moved = spheroids.iter().zip(&frame.lights);
         let moved: Vec<_> = moved.map(|(bound, light)| bound.placed(light.position, 0.5)).collect();
-        frame.same_placed(&moved, |spheroid| stretch(spheroid.into()))?;
+        frame.same_placed(&moved)?;
         let moved: Vec<Ellipsoid> = moved.into_iter().map(Ellipsoid::from).collect();
-        frame.same_placed(&moved, stretch)?;
+        frame.same_placed(&moved)?;
     }
 
     #[test]
@@ -359,9 +400,13 @@ fn later_frames_allocate_nothing() {
     let mut draw_frame = || {
         let builder = BatchBuilder::new(&Roulette::new(0.1).unwrap(), &camera);
         let order = order.of(lights.iter().map(Vpl::position), &camera);
-        let lights = order
-            .iter()
-            .map(|i| (*i, &lights[*i as usize], Xi::hashed(*i, 0, 0)));
+        let lights = order.iter().map(|i| {
+            (
+                *i,
+                &lights[*i as usize],
+                FrameSeed { frame: 0, seed: 0 }.xi(*i),
+            )
+        });
         batch.clear();
         builder.add(lights, &mut batch);
     };

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use reference::{Brdf, Masking, Vector, ggx_ndf, smith_g1, smith_g2};
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, Dielectric, Direction, Fresnel, Ggx, GgxLobe,
-    HeightCorrelated, Lobe, MaskingShadowing, NoFresnel, Schlick, Separable, glam::Vec3,
+    HeightCorrelated, Incidence, Lobe, MaskingShadowing, NoFresnel, Schlick, Separable, glam::Vec3,
 };
 
 const ROUGHNESSES: [f32; 7] = [1e-3, 0.01, 0.05, 0.2, 0.5, 0.9, 1.0];
@@ -145,7 +145,14 @@ fn check_fresnel(fresnel: impl Fresnel, model: reference::Fresnel, cosine: f32, 
     let lit = lit_at(mu);
     let most = model.max_above_surface(lit.surface.incident_cosine());
     let ggx = Ggx::new(0.5).unwrap();
-    let lobe = GgxLobe::new(ggx, fresnel, lit.normal, lit.incoming);
+    let lobe = GgxLobe::new(
+        ggx,
+        fresnel,
+        Incidence {
+            normal: lit.normal,
+            incoming: lit.incoming,
+        },
+    );
     let bound = f64::from(lobe.max_fresnel());
     assert!(
         bound >= most,
@@ -231,7 +238,7 @@ proptest! {
         outgoing in generators::unit_vector(),
     ) {
         let schlick = Schlick::new(f0).unwrap();
-        let lobe = GgxLobe::new(Ggx::new(roughness).unwrap(), schlick, lit.normal, lit.incoming);
+        let lobe = GgxLobe::new(Ggx::new(roughness).unwrap(), schlick, Incidence { normal: lit.normal, incoming: lit.incoming });
         let outgoing = outgoing.to_f32();
         let exact_outgoing = Vector::from(outgoing).unit();
         // Where μ_o is all rounding, so is what depends on it.
@@ -268,7 +275,7 @@ proptest! {
             return Ok(());
         }
         let towards = |incoming| {
-            AnisotropicGgxLobe::new(ggx, schlick, lit.normal, tangent, incoming).unwrap()
+            AnisotropicGgxLobe::new(ggx, schlick, Incidence { normal: lit.normal, incoming }, tangent).unwrap()
         };
         let (lobe, back) = (towards(lit.incoming), towards(outgoing));
         let mu = lit.surface.incident_cosine();
@@ -298,10 +305,9 @@ proptest! {
         let tangent = Direction::new(tangent.to_f32()).unwrap();
         let ggx = AnisotropicGgx::new(roughness, roughness).unwrap();
         if let Ok(lobe) =
-            AnisotropicGgxLobe::new(ggx, NoFresnel, lit.normal, tangent, lit.incoming)
+            AnisotropicGgxLobe::new(ggx, NoFresnel, Incidence { normal: lit.normal, incoming: lit.incoming }, tangent)
         {
-            let plain = GgxLobe::new(
-                Ggx::new(roughness).unwrap(), NoFresnel, lit.normal, lit.incoming);
+            let plain = GgxLobe::new(Ggx::new(roughness).unwrap(), NoFresnel, Incidence { normal: lit.normal, incoming: lit.incoming });
             let outgoing = outgoing.to_f32();
             let [value, same] = [lobe.value(outgoing), plain.value(outgoing)];
             prop_assert!((value - same).abs() <= 1e-3 * same, "{value} {same}");
@@ -320,12 +326,10 @@ proptest! {
         let incoming = stochastic_light_culling::Direction::new(
             Vec3::new(1.0, 0.0, incoming_height as f32)).unwrap();
         let outgoing = Vec3::new(sign, 0.0, outgoing_height as f32).normalize();
-        let lobe = GgxLobe::new(
-            Ggx::new(roughness).unwrap(), NoFresnel, stochastic_light_culling::Direction::Z, incoming);
+        let lobe = GgxLobe::new(Ggx::new(roughness).unwrap(), NoFresnel, Incidence { normal: stochastic_light_culling::Direction::Z, incoming });
         let rougher = 1.0_f32.min(1e3 * roughness);
         let grain = AnisotropicGgx::new(roughness, rougher).unwrap();
-        let grained = AnisotropicGgxLobe::new(
-            grain, NoFresnel, Direction::Z, Direction::Y, incoming).unwrap();
+        let grained = AnisotropicGgxLobe::new(grain, NoFresnel, Incidence { normal: Direction::Z, incoming }, Direction::Y).unwrap();
         for value in [
             lobe.value(outgoing),
             lobe.separable().value(outgoing),
@@ -344,8 +348,7 @@ fn normal_incidence_and_full_roughness_are_ordinary() {
     let lobe = GgxLobe::new(
         Ggx::new(1.0).unwrap(),
         NoFresnel,
-        stochastic_light_culling::Direction::Z,
-        stochastic_light_culling::Direction::Z,
+        Incidence::head_on(stochastic_light_culling::Direction::Z),
     );
     assert_relative_eq!(
         f64::from(lobe.value(Vec3::Z)),

@@ -7,7 +7,7 @@ use approx::assert_relative_eq;
 use proptest::prelude::*;
 use reference::Vector;
 use stochastic_light_culling::{
-    Camera, CameraSphere, PixelRectangle, Sphere,
+    Camera, PixelRectangle, Sphere,
     glam::{Mat4, Vec3},
 };
 
@@ -78,7 +78,7 @@ proptest! {
 
         let center = (eye + direction * distance).to_f32();
         let sphere = Sphere::new(center, 1.0).unwrap();
-        let shape = CameraSphere::new(&sphere, &camera).unwrap();
+        let shape = sphere.project(&camera).unwrap();
         let seen = Vector::from(shape.center());
         let exact = view.to_camera_space(Vector::from(center));
         let of_origin = f64::from(view.from_world.w_axis.truncate().length());

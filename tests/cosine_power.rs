@@ -9,7 +9,9 @@ use std::f64::consts::{PI, TAU};
 use approx::assert_relative_eq;
 use proptest::prelude::*;
 use reference::{Brdf, Vector};
-use stochastic_light_culling::{Bounded, Direction, LambertLobe, Lobe, PhongLobe, glam::Vec3};
+use stochastic_light_culling::{
+    Bounded, Direction, Incidence, LambertLobe, Lobe, PhongLobe, Tight, glam::Vec3,
+};
 
 proptest! {
     #![proptest_config(generators::cases(1000))]
@@ -22,7 +24,7 @@ proptest! {
         off in generators::log_uniform(1e-3, 10.0),
         side in generators::unit_vector(),
     ) {
-        let lobe = PhongLobe::new(albedo, exponent, lit.normal, lit.incoming).unwrap();
+        let lobe = PhongLobe::new(albedo, exponent, Incidence { normal: lit.normal, incoming: lit.incoming }).unwrap();
         // As far off the mirror direction as the lobe is wide, more or less.
         let mirror = lit.surface.mirror().unit();
         let width = (1.0 / (1.0 + f64::from(exponent))).sqrt();
@@ -89,7 +91,15 @@ fn phong_lobe_gains_no_energy() {
         );
         for cosine in [1.0, 0.7, 0.2, 0.01] {
             let lit = lit_at(cosine);
-            let lobe = PhongLobe::new(0.8, exponent, lit.normal, lit.incoming).unwrap();
+            let lobe = PhongLobe::new(
+                0.8,
+                exponent,
+                Incidence {
+                    normal: lit.normal,
+                    incoming: lit.incoming,
+                },
+            )
+            .unwrap();
             let reflected = reflected(&lobe, 200);
             assert!(
                 reflected < 0.802,
@@ -184,7 +194,7 @@ fn ellipsoid_of_a_diffuse_light_is_the_smallest() {
     for albedo in [1e-30, 0.2, 1.0] {
         let lobe = LambertLobe::new(albedo, Direction::Y).unwrap();
         let reach = (f64::from(albedo) / PI).sqrt();
-        let tight = volume(lobe.tight_bound().semi_axes());
+        let tight = volume(lobe.unit_bound_by(Tight).semi_axes());
         let ratio = tight / (least_volume_around_cosine_power(0.5) * reach.powi(3));
         assert!(ratio > 0.9998 && ratio < 1.0001, "{ratio} of the smallest");
         let of_the_sphere = tight / f64::from(lobe.unit_bound().radius()).powi(3);
@@ -201,7 +211,9 @@ fn phong_lobes_of_exponent_one_are_bounded_as_lambert_s() {
     let phong = PhongLobe::about(0.6, 1.0, Direction::Z)
         .unwrap()
         .unit_bound();
-    let lambert = LambertLobe::new(0.6, Direction::Z).unwrap().tight_bound();
+    let lambert = LambertLobe::new(0.6, Direction::Z)
+        .unwrap()
+        .unit_bound_by(Tight);
     let difference = (phong.semi_axes() - lambert.semi_axes()).abs() / lambert.semi_axes();
     assert!(difference.max_element() < 5e-3, "{difference}");
     assert!((volume(phong.semi_axes()) / volume(lambert.semi_axes()) - 1.0).abs() < 1e-4);

@@ -10,9 +10,9 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use stochastic_light_culling::{
-    BatchShape, Camera, CameraSphere, CullCounters, Culler, DepthInterval, Ellipsoid, Error,
-    LightBatch, LightLists, PixelRectangle, Sphere, Stretch, TileDepths, TileRectangle,
-    glam::{Mat3, Vec3},
+    BoxTest, Camera, CullCounters, Culler, DepthInterval, Ellipsoid, Error, LightBatch, LightLists,
+    PixelRectangle, ProjectedEllipsoid, ProjectedSphere, Sphere, TileDepths, TileRectangle,
+    glam::{Mat3, Vec2, Vec3},
 };
 use workload::{Depths, Subregion};
 
@@ -44,7 +44,8 @@ impl Grid {
 
     fn tile_depths(&self) -> TileDepths {
         let intervals = self.depths[0].len() as u32;
-        let mut tiles = TileDepths::new(self.size, intervals, |tile| self.rectangle(tile)).unwrap();
+        let mut tiles =
+            TileDepths::from_rectangles(self.size, intervals, |tile| self.rectangle(tile)).unwrap();
         for (tile, depths) in self.tiles() {
             tiles.set(tile, depths.iter().copied());
         }
@@ -67,7 +68,7 @@ fn grid() -> impl Strategy<Value = Grid> {
 }
 
 /// Before the camera, at all distances and sizes, and now and then everywhere.
-fn stretch() -> impl Strategy<Value = Stretch> {
+fn stretch() -> impl Strategy<Value = ProjectedEllipsoid> {
     let center = (-30.0..30.0_f32, -20.0..20.0_f32, -50.0..5.0_f32);
     let ellipsoid = (center, generators::ellipsoid(), -3.0..0.5_f32);
     let anywhere = ellipsoid.prop_map(|((x, y, z), shape, size)| {
@@ -79,21 +80,21 @@ fn stretch() -> impl Strategy<Value = Stretch> {
     let distant =
         Just(Ellipsoid::new(Vec3::splat(1e30), Mat3::IDENTITY, Vec3::splat(1.0)).unwrap());
     prop_oneof![30 => anywhere, 1 => huge, 1 => distant]
-        .prop_map(|ellipsoid| Stretch::new(&ellipsoid, &camera()).unwrap())
+        .prop_map(|ellipsoid| ellipsoid.project(&camera()).unwrap())
 }
 
-fn sphere() -> impl Strategy<Value = CameraSphere> {
+fn sphere() -> impl Strategy<Value = ProjectedSphere> {
     let center = (-30.0..30.0_f32, -20.0..20.0_f32, -50.0..5.0_f32);
     let radius = prop_oneof![30 => generators::log_uniform(1e-2, 20.0), 1 => Just(1e38)];
     (center, radius).prop_map(|((x, y, z), radius)| {
         let sphere = Sphere::new(Vec3::new(x, y, z), radius as f32).unwrap();
-        CameraSphere::new(&sphere, &camera()).unwrap()
+        sphere.project(&camera()).unwrap()
     })
 }
 
 /// The parallel lists are the serial ones, to the last number.
 #[cfg(feature = "rayon")]
-fn culled_in_parallel_as_serially<T: BatchShape + Send + Sync>(
+fn culled_in_parallel_as_serially<T: BoxTest + Send + Sync>(
     grid: &Grid,
     shapes: &[T],
 ) -> Result<(), TestCaseError> {
@@ -105,14 +106,14 @@ fn culled_in_parallel_as_serially<T: BatchShape + Send + Sync>(
         let counters = culler.cull(&batch, &tiles, &mut serial).unwrap();
         let counted = culler.cull_in_parallel(&batch, &tiles, &mut parallel);
         prop_assert_eq!(serial.ranges(), parallel.ranges());
-        prop_assert_eq!(serial.numbers(), parallel.numbers());
+        prop_assert_eq!(serial.lights(), parallel.lights());
         prop_assert_eq!(counters.rejected_exactly, counted.unwrap().rejected_exactly);
     }
     Ok(())
 }
 
 /// All cullers, each of which must find the same.
-fn cullers<T: BatchShape>() -> impl Iterator<Item = Culler<T>> {
+fn cullers<T: BoxTest>() -> impl Iterator<Item = Culler<T>> {
     let flat_or_not = |lanes| {
         [
             Culler::with_lanes(lanes),
@@ -124,7 +125,7 @@ fn cullers<T: BatchShape>() -> impl Iterator<Item = Culler<T>> {
 
 type Test<T> = fn(&T, &TileRectangle, &DepthInterval) -> bool;
 
-fn culled_as_one_by_one<T: BatchShape + Send + Sync>(
+fn culled_as_one_by_one<T: BoxTest + Send + Sync>(
     grid: &Grid,
     shapes: &[T],
 ) -> Result<(), TestCaseError> {
@@ -139,7 +140,7 @@ fn culled_as_one_by_one<T: BatchShape + Send + Sync>(
     Ok(())
 }
 
-fn culled_by<T: BatchShape>(
+fn culled_by<T: BoxTest>(
     mut culler: Culler<T>,
     test: Test<T>,
     grid: &Grid,
@@ -188,6 +189,96 @@ proptest! {
     }
 }
 
+/// Of all rectangles that there can be, and of pixels as far outside the image as can be said.
+#[test]
+fn lists_of_extreme_tiles_are_those_of_the_scalar_test() {
+    let mut rng = fastrand::Rng::with_seed(3);
+    let slopes = [0.0, 1e-45, 1.0, 200.0, 1e6, 1e9, 1e18, 1e30, 3e38];
+    let slopes = slopes.iter().flat_map(|slope| [-slope, *slope]);
+    let slopes: Vec<f32> = slopes.collect();
+    let depths = [0.0, 1e-45, 1e-20, 1.0, 2.0, 1e20, f32::MAX];
+    for _ in 0..100 {
+        let side = |rng: &mut fastrand::Rng| {
+            let [a, b] = [(); 2].map(|()| slopes[rng.usize(0..slopes.len())]);
+            TileRectangle::new(Vec2::splat(a.min(b)), Vec2::splat(a.max(b))).ok()
+        };
+        let [across, down] = [(); 2].map(|()| -> Vec<TileRectangle> {
+            std::iter::repeat_with(|| side(&mut rng))
+                .flatten()
+                .take(12)
+                .collect()
+        });
+        let of_pixels = rng.bool();
+        let rectangle = |[x, y]: [u32; 2]| {
+            if of_pixels {
+                let min = [x, y].map(|n| if n == 0 { 0 } else { u32::MAX >> (2 * n) });
+                let max = [x, y].map(|n| u32::MAX >> n);
+                return camera().tile_rectangle([1, 1], PixelRectangle { min, max });
+            }
+            let [across, down] = [across[x as usize], down[y as usize]];
+            let (x, y) = (
+                [across.min().x, across.max().x],
+                [down.min().y, down.max().y],
+            );
+            TileRectangle::new(Vec2::new(x[0], y[0]), Vec2::new(x[1], y[1])).unwrap()
+        };
+        let mut tiles = TileDepths::from_rectangles([12, 12], 1, rectangle).unwrap();
+        let mut seen = Vec::new();
+        for tile in (0..144).map(|i| [i % 12, i / 12]) {
+            let [a, b] = [(); 2].map(|()| depths[rng.usize(0..depths.len())]);
+            let interval = DepthInterval::new(a.min(b), a.max(b)).unwrap();
+            tiles.set(tile, [interval]);
+            seen.push((tile, interval));
+        }
+        let shapes: Vec<ProjectedEllipsoid> = (0..60)
+            .map(|_| {
+                let mut size =
+                    |least: f32, most: f32| 10_f32.powf(least + (most - least) * rng.f32());
+                let longest = size(-38.0, 38.0);
+                let semi_axes = Vec3::new(1.0, size(-8.9, 0.0), size(-8.9, 0.0)) * longest;
+                let semi_axes = semi_axes.max(Vec3::splat(f32::MIN_POSITIVE));
+                let distance = size(-38.0, 38.0);
+                let way = Vec3::new(size(-6.0, 0.0), -size(-6.0, 0.0), size(-6.0, 0.0) - 0.5);
+                let rotation =
+                    Mat3::from_rotation_y(size(-4.0, 1.0)) * Mat3::from_rotation_z(size(-4.0, 1.0));
+                let ellipsoid = Ellipsoid::new(way * distance, rotation, semi_axes).unwrap();
+                let stretch = ellipsoid.project(&camera()).unwrap();
+                // What the limit of the slopes relies on.
+                let elements = stretch.matrix().to_cols_array();
+                assert!(elements.iter().all(|element| element.abs() <= 1e33));
+                assert!(stretch.center().is_finite());
+                stretch
+            })
+            .collect();
+        let mut batch = LightBatch::new();
+        batch.extend((0..).zip(shapes.iter().copied()));
+        for exact in [false, true] {
+            for culler in cullers() {
+                let mut culler = if exact {
+                    culler.with_exact_test()
+                } else {
+                    culler
+                };
+                let mut lists = LightLists::new();
+                culler.cull(&batch, &tiles, &mut lists).unwrap();
+                for (tile, depths) in &seen {
+                    let rectangle = rectangle(*tile);
+                    let touches = |shape: &ProjectedEllipsoid| {
+                        if exact {
+                            shape.touches_exactly(&rectangle, depths)
+                        } else {
+                            shape.touches(&rectangle, depths)
+                        }
+                    };
+                    let touching = (0..).zip(&shapes).filter(|(_, shape)| touches(shape));
+                    let expected: Vec<u32> = touching.map(|(number, _)| number).collect();
+                    assert_eq!(lists.of(*tile, 0), expected, "{rectangle:?} {depths:?}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn memory_is_reused_without_a_trace_of_earlier_frames() {
     let mut runner = TestRunner::deterministic();
@@ -209,7 +300,7 @@ fn memory_is_reused_without_a_trace_of_earlier_frames() {
             .cull(&batch.clone(), &tiles, &mut fresh)
             .unwrap();
         assert_eq!(lists.ranges(), fresh.ranges());
-        assert_eq!(lists.numbers(), fresh.numbers());
+        assert_eq!(lists.lights(), fresh.lights());
     }
 }
 
@@ -226,7 +317,7 @@ fn nothing_is_found_where_there_is_nothing() {
                 },
             )
         };
-        TileDepths::new([3, 2], intervals, rectangle)
+        TileDepths::from_rectangles([3, 2], intervals, rectangle)
     };
     assert!(matches!(tiles(0), Err(Error::Size { .. })));
     assert!(tiles(u32::MAX).is_err());
@@ -241,13 +332,13 @@ fn nothing_is_found_where_there_is_nothing() {
     assert!(lists.is_empty() && lists.of([0, 0], 0).is_empty());
 
     // Light, but no surfaces.
-    batch.push(5, &CameraSphere::new(&everywhere, &camera).unwrap());
+    batch.push(5, &everywhere.project(&camera).unwrap());
     let counters = culler.cull(&batch, &tiles, &mut lists).unwrap();
     assert_eq!((counters.tile_tests, counters.pairs), (0, 0));
 
     tiles.set([2, 1], [None, DepthInterval::new(1.0, 2.0).ok()]);
     culler.cull(&batch, &tiles, &mut lists).unwrap();
-    assert_eq!(lists.numbers(), [5]);
+    assert_eq!(lists.lights(), [5]);
     assert_eq!(lists.of([2, 1], 1), [5]);
     for (tile, interval) in [
         ([2, 1], 0),
@@ -268,20 +359,52 @@ fn nothing_is_found_where_there_is_nothing() {
 #[test]
 fn grids_too_large_for_64_bits_are_refused() {
     let view = TileRectangle::new([-1.0; 2].into(), [1.0; 2].into()).unwrap();
-    let tiles = TileDepths::new([1 << 31, 1 << 31], 4, |_| view);
+    let tiles = TileDepths::from_rectangles([1 << 31, 1 << 31], 4, |_| view);
     assert!(matches!(tiles, Err(Error::Size { .. })));
+}
+
+/// Before anything is asked for or allocated.
+#[test]
+fn grids_too_large_for_memory_are_refused() {
+    let never = |_| -> TileRectangle { unreachable!("there is no such tile") };
+    for (size, intervals) in [
+        ([1, u32::MAX], 1),
+        ([1, 65_537], 1),
+        ([65_537, 1], 1),
+        ([u32::MAX, 1], 1),
+        ([1 << 13, 1 << 14], 2),
+        ([1 << 16, 1 << 16], 1),
+        ([1, 1], (1 << 27) + 1),
+    ] {
+        let message = TileDepths::from_rectangles(size, intervals, never)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.contains(&format!("{}×{}", size[0], size[1])),
+            "{message}"
+        );
+    }
+    let view = TileRectangle::new([-1.0; 2].into(), [1.0; 2].into()).unwrap();
+    for size in [[1 << 16, 1], [1, 1 << 16], [1 << 10, 1 << 10]] {
+        assert_eq!(
+            TileDepths::from_rectangles(size, 2, |_| view)
+                .unwrap()
+                .size(),
+            size
+        );
+    }
 }
 
 #[test]
 #[should_panic(expected = "there is no tile (3, 0) of 3×2")]
 fn depths_of_no_tile_are_no_ones() {
     let view = TileRectangle::new([-1.0; 2].into(), [1.0; 2].into()).unwrap();
-    let tiles = TileDepths::new([3, 2], 1, |_| view).unwrap();
+    let tiles = TileDepths::from_rectangles([3, 2], 1, |_| view).unwrap();
     tiles.interval_of([3, 0], 1.0);
 }
 
 /// The lights in all near intervals together, and in all far ones.
-fn hits(frame: &[Subregion], depths: Depths, mut culler: Culler<Stretch>) -> [usize; 2] {
+fn hits(frame: &[Subregion], depths: Depths, mut culler: Culler<ProjectedEllipsoid>) -> [usize; 2] {
     let camera = workload::camera();
     let mut lists = LightLists::new();
     let mut hits = [0; 2];

@@ -11,11 +11,11 @@ use std::f64::consts::TAU;
 use generators::Lit;
 use other_lobes::other_lobes;
 use proptest::prelude::*;
-use reference::{Brdf, Fresnel, GivenFresnel, Masking, Shape, Vector, smith_g1};
+use reference::{Brdf, Fresnel, GivenFresnel, MaskedAlone, Masking, Shape, Vector, smith_g1};
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, Bound, Bounded, Conductor, ConstantLobe, Dielectric,
-    Direction, Ellipsoid, Ggx, GgxLobe, LambertLobe, Lobe, MaskingShadowing, NoFresnel, PhongLobe,
-    Roulette, Schlick, Spheroid, Vpl, Xi, glam::Vec3,
+    AnisotropicGgx, AnisotropicGgxLobe, Bounded, Conductor, ConstantLobe, Dielectric, Direction,
+    Ellipsoid, Ggx, GgxLobe, Incidence, LambertLobe, Lobe, MaskingShadowing, NoFresnel, Paper,
+    PhongLobe, Roulette, Schlick, Shape as _, Spheroid, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 
 /// What the crate says of a GGX light.
@@ -43,7 +43,7 @@ impl Case {
         (scale * self.lit.surface.value(self.brdf, outgoing)).sqrt()
     }
 
-    fn bound<L: Bounded>(&self, lobe: L) -> L::Bound {
+    fn bound<L: Bounded>(&self, lobe: L) -> L::Shape {
         let (flux, delta, xi) = self.roulette;
         Vpl::new(self.position, flux, lobe)
             .unwrap()
@@ -72,10 +72,18 @@ impl Case {
     where
         F: stochastic_light_culling::Fresnel,
     {
-        let lobe = GgxLobe::new(ggx, fresnel, self.lit.normal, self.lit.incoming);
+        let lobe = GgxLobe::new(
+            ggx,
+            fresnel,
+            Incidence {
+                normal: self.lit.normal,
+                incoming: self.lit.incoming,
+            },
+        );
         match masking {
             Masking::HeightCorrelated => self.bounds_of_lobe(lobe),
             Masking::Separable => self.bounds_of_lobe(lobe.separable()),
+            Masking::MaskedAlone => self.bounds_of_lobe(lobe.with_masking::<MaskedAlone>()),
         }
     }
 
@@ -90,10 +98,12 @@ impl Case {
         let ggx = AnisotropicGgx::new(along, across).unwrap();
         let fresnel = GivenFresnel::try_from(fresnel).unwrap();
         let (normal, incoming) = (self.lit.normal, self.lit.incoming);
-        let lobe = AnisotropicGgxLobe::new(ggx, fresnel, normal, tangent, incoming).unwrap();
+        let lobe =
+            AnisotropicGgxLobe::new(ggx, fresnel, Incidence { normal, incoming }, tangent).unwrap();
         match masking {
             Masking::HeightCorrelated => self.bound(lobe),
             Masking::Separable => self.bound(lobe.separable()),
+            Masking::MaskedAlone => self.bound(lobe.with_masking::<MaskedAlone>()),
         }
     }
 
@@ -106,9 +116,9 @@ impl Case {
         let light = Vpl::new(self.position, flux, lobe).unwrap();
         let (roulette, xi) = (Roulette::new(delta).unwrap(), Xi::new(xi).unwrap());
         GgxBounds {
-            spheroid: light.bound(&roulette, xi),
-            triaxial: light.triaxial_bound(&roulette, xi),
-            tight: light.tight_bound(&roulette, xi),
+            spheroid: light.bound_by(Paper, &roulette, xi),
+            triaxial: light.bound_by(Triaxial, &roulette, xi),
+            tight: light.bound_by(Tight, &roulette, xi),
             max_fresnel: lobe.max_fresnel().into(),
         }
     }
@@ -155,15 +165,23 @@ impl Case {
                 let (flux, delta, xi) = self.roulette;
                 let lobe = LambertLobe::new(albedo, self.lit.normal).unwrap();
                 let light = Vpl::new(self.position, flux, lobe).unwrap();
-                let tight = light.tight_bound(&Roulette::new(delta).unwrap(), Xi::new(xi).unwrap());
+                let tight =
+                    light.bound_by(Tight, &Roulette::new(delta).unwrap(), Xi::new(xi).unwrap());
                 vec![
                     ("sphere of Lambert's lobe", self.bound(lobe).into()),
                     ("ellipsoid of Lambert's lobe", tight.into()),
                 ]
             }
             Brdf::Phong { albedo, exponent } => {
-                let lobe =
-                    PhongLobe::new(albedo, exponent, self.lit.normal, self.lit.incoming).unwrap();
+                let lobe = PhongLobe::new(
+                    albedo,
+                    exponent,
+                    Incidence {
+                        normal: self.lit.normal,
+                        incoming: self.lit.incoming,
+                    },
+                )
+                .unwrap();
                 vec![("ellipsoid of Phong's lobe", self.bound(lobe).into())]
             }
             Brdf::Constant => vec![("sphere of a point light", self.bound(ConstantLobe).into())],
@@ -363,11 +381,13 @@ fn placing_a_placed_spheroid_rounds_outward() {
     let lobe = GgxLobe::new(
         ggx,
         NoFresnel,
-        Direction::Z,
-        Direction::new(Vec3::ONE).unwrap(),
+        Incidence {
+            normal: Direction::Z,
+            incoming: Direction::new(Vec3::ONE).unwrap(),
+        },
     );
     let (first, then) = (Vec3::new(0.1, 0.7, -0.3), Vec3::new(900.0, -70.3, 11.1));
-    let once = lobe.unit_bound().placed(first, 1e-3);
+    let once = lobe.unit_bound_by(Paper).placed(first, 1e-3);
     let again = Shape::from(once.placed(then, 0.3));
     let inner = Shape::from(once);
     for end in [-1.0, 1.0] {
@@ -385,21 +405,53 @@ fn lights_that_reach_nothing_have_an_empty_range() {
     let below = Direction::new(Vec3::new(0.3, 0.0, -1.0)).unwrap();
     let ggx = Ggx::new(0.2).unwrap();
     let (roulette, xi) = (Roulette::new(0.001).unwrap(), Xi::new(0.5).unwrap());
-    let lit_from_below = GgxLobe::new(ggx, NoFresnel, Direction::Z, below);
-    let lit_along = GgxLobe::new(ggx, NoFresnel, Direction::Z, Direction::X);
+    let lit_from_below = GgxLobe::new(
+        ggx,
+        NoFresnel,
+        Incidence {
+            normal: Direction::Z,
+            incoming: below,
+        },
+    );
+    let lit_along = GgxLobe::new(
+        ggx,
+        NoFresnel,
+        Incidence {
+            normal: Direction::Z,
+            incoming: Direction::X,
+        },
+    );
     for lobe in [lit_from_below, lit_along] {
         let light = Vpl::new(Vec3::ONE, 1.0, lobe).unwrap();
         assert!(light.bound(&roulette, xi).is_empty());
         assert_eq!(light.radiant_intensity(Vec3::Z), 0.0);
     }
-    let lit = GgxLobe::new(ggx, NoFresnel, Direction::Z, -below);
-    let dark = Vpl::new(Vec3::ONE, 0.0, lit).unwrap().bound(&roulette, xi);
+    let lit = GgxLobe::new(
+        ggx,
+        NoFresnel,
+        Incidence {
+            normal: Direction::Z,
+            incoming: -below,
+        },
+    );
+    let dark = Vpl::new(Vec3::ONE, 0.0, lit).unwrap();
+    let dark = dark.bound_by(Paper, &roulette, xi);
     assert!(dark.is_empty() && Ellipsoid::from(dark).is_empty());
     assert!(dark.enclosing_sphere().is_empty() && dark.sphere_at_focus().is_empty());
     let black = Vpl::new(Vec3::ONE, 1.0, LambertLobe::new(0.0, Direction::Z).unwrap()).unwrap();
-    assert!(black.bound(&roulette, xi).is_empty() && black.tight_bound(&roulette, xi).is_empty());
+    assert!(
+        black.bound(&roulette, xi).is_empty() && black.bound_by(Tight, &roulette, xi).is_empty()
+    );
     for (albedo, incoming) in [(0.0, Direction::Z), (1.0, below), (1.0, Direction::X)] {
-        let dark = PhongLobe::new(albedo, 40.0, Direction::Z, incoming).unwrap();
+        let dark = PhongLobe::new(
+            albedo,
+            40.0,
+            Incidence {
+                normal: Direction::Z,
+                incoming,
+            },
+        )
+        .unwrap();
         assert!(dark.unit_bound().is_empty());
         assert_eq!(dark.value(*dark.axis()), 0.0);
         assert_eq!(dark.value(Vec3::Z), 0.0);

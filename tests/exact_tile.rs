@@ -6,8 +6,7 @@ mod reference;
 use proptest::prelude::*;
 use reference::{Frustum, Shape, Vector};
 use stochastic_light_culling::{
-    Camera, CameraSphere, DepthInterval, Ellipsoid, HalfSpace, PixelRectangle, Sphere, Stretch,
-    TileRectangle, TileTest,
+    Camera, DepthInterval, Ellipsoid, HalfSpace, PixelRectangle, Sphere, TileRectangle, TileTest,
     glam::{Mat3, Vec2, Vec3},
 };
 
@@ -87,7 +86,7 @@ proptest! {
     ) {
         let view = view.aimed_at(ellipsoid.center(), distance * f64::from(ellipsoid.semi_axes().max_element()));
         let camera = Camera::new(view.from_world, view.projection).unwrap();
-        let stretch = Stretch::new(&ellipsoid, &camera).unwrap();
+        let stretch = ellipsoid.project(&camera).unwrap();
         let point = view.to_camera_space(Shape::from(ellipsoid).point(unit * level));
         if let Some(tile) = tile_about(point, room) {
             decides_as_distance(&stretch, &tile, (stretch.matrix(), stretch.center(), 1.0))?;
@@ -104,7 +103,7 @@ proptest! {
     ) {
         let view = view.aimed_at(Vec3::ZERO, distance * radius);
         let camera = Camera::new(view.from_world, view.projection).unwrap();
-        let sphere = CameraSphere::new(&Sphere::new(Vec3::ZERO, radius as f32).unwrap(), &camera).unwrap();
+        let sphere = Sphere::new(Vec3::ZERO, radius as f32).unwrap().project(&camera).unwrap();
         let point = view.to_camera_space(unit * (level * radius));
         if let Some(tile) = tile_about(point, room) {
             let radius = f64::from(sphere.radius_squared()).sqrt();
@@ -127,7 +126,7 @@ fn of_tiles_that_begin_at_the_eye() {
     let point = TileRectangle::new(Vec2::ZERO, Vec2::ZERO).unwrap();
     let sphere = |z: f32, radius: f32| {
         let sphere = Sphere::new(Vec3::new(0.0, 0.0, -z), radius).unwrap();
-        CameraSphere::new(&sphere, &ahead()).unwrap()
+        sphere.project(&ahead()).unwrap()
     };
     for tile in [point, whole_view()] {
         for far in [0.0, 1.0, 1e30] {
@@ -142,9 +141,9 @@ fn of_tiles_that_begin_at_the_eye() {
 #[test]
 fn of_lights_without_end() {
     let everywhere = Sphere::new(Vec3::ZERO, f32::MAX).unwrap();
-    let sphere = CameraSphere::new(&everywhere, &ahead()).unwrap();
+    let sphere = everywhere.project(&ahead()).unwrap();
     let boundless = Ellipsoid::new(Vec3::ZERO, Mat3::IDENTITY, Vec3::splat(f32::MAX)).unwrap();
-    let stretch = Stretch::new(&boundless, &ahead()).unwrap();
+    let stretch = boundless.project(&ahead()).unwrap();
     for (near, far) in [
         (0.0, 0.0),
         (0.0, f32::MAX),
@@ -162,7 +161,9 @@ fn of_lights_without_end() {
 /// A half-space is tested by the tile's corners, which is exact.
 #[test]
 fn of_half_spaces() {
-    let above = HalfSpace::new(Vec3::ZERO, stochastic_light_culling::Direction::Y, &ahead());
+    let above = HalfSpace::new(Vec3::ZERO, stochastic_light_culling::Direction::Y)
+        .unwrap()
+        .project(&ahead());
     let tile = |low: f32, high: f32| {
         TileRectangle::new(Vec2::new(-0.1, low), Vec2::new(0.1, high)).unwrap()
     };

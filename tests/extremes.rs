@@ -10,7 +10,7 @@ use adversary::{Light, Tile};
 use fastrand::Rng;
 use rayon::prelude::*;
 use reference::Brdf;
-use stochastic_light_culling::{HalfSpace, TileTest};
+use stochastic_light_culling::HalfSpace;
 
 const TILES_PER_LIGHT: usize = 16;
 const BATCH: usize = 4096;
@@ -32,7 +32,9 @@ fn no_light_is_lost() {
                 if lost.is_empty() {
                     lost = bound.that_lose_exactly(&tile);
                 }
-                let lit_side = HalfSpace::new(light.position, light.normal, &tile.camera);
+                let lit_side = HalfSpace::new(light.position, light.normal)
+                    .unwrap()
+                    .project(&tile.camera);
                 let is_lit = lit_side.touches(&tile.rectangle, &tile.depths);
                 // A point light has no surface.
                 if !is_lit && !matches!(light.brdf, Brdf::Constant) {

@@ -9,8 +9,8 @@ use std::mem::{align_of, offset_of, size_of};
 use generators::cases;
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    Camera, CameraSphere, Culler, DepthInterval, GpuSphere, GpuStretch, LightBatch, LightLists,
-    Sphere, Stretch, TileDepths, TileRectangle, TileTest,
+    Camera, Culler, DepthInterval, GpuEllipsoid, GpuSphere, LightBatch, LightLists, Sphere,
+    TileDepths, TileRectangle,
     glam::{Vec2, Vec3},
 };
 
@@ -30,17 +30,20 @@ fn number(bytes: &[u8], offset: usize) -> f32 {
 /// follows a `vec3` may fill its fourth place, and an array's elements are apart by a multiple of 16.
 #[test]
 fn records_lie_as_shaders_expect() {
-    assert_eq!(offset_of!(GpuStretch, x_and_y_axes), 0);
-    assert_eq!(offset_of!(GpuStretch, z_axis), 16);
-    assert_eq!(offset_of!(GpuStretch, light), 28);
-    assert_eq!(offset_of!(GpuStretch, center), 32);
-    assert_eq!(offset_of!(GpuStretch, unused), 44);
-    assert_eq!(size_of::<GpuStretch>(), 48);
+    assert_eq!(offset_of!(GpuEllipsoid, x_and_y_axes), 0);
+    assert_eq!(offset_of!(GpuEllipsoid, z_axis), 16);
+    assert_eq!(offset_of!(GpuEllipsoid, light), 28);
+    assert_eq!(offset_of!(GpuEllipsoid, center), 32);
+    assert_eq!(offset_of!(GpuEllipsoid, unused), 44);
+    assert_eq!(size_of::<GpuEllipsoid>(), 48);
     assert_eq!(offset_of!(GpuSphere, center), 0);
     assert_eq!(offset_of!(GpuSphere, radius_squared), 12);
     assert_eq!(size_of::<GpuSphere>(), 16);
     // No more than bytes that were read from anywhere as words have.
-    assert_eq!((align_of::<GpuStretch>(), align_of::<GpuSphere>()), (4, 4));
+    assert_eq!(
+        (align_of::<GpuEllipsoid>(), align_of::<GpuSphere>()),
+        (4, 4)
+    );
 }
 
 #[test]
@@ -50,21 +53,21 @@ fn lists_are_buffers_already() {
         let left = x as f32 - 1.0;
         TileRectangle::new(Vec2::new(left, -0.5), Vec2::new(left + 1.0, 0.5)).unwrap()
     };
-    let mut tiles = TileDepths::new([2, 1], 1, rectangle).unwrap();
+    let mut tiles = TileDepths::from_rectangles([2, 1], 1, rectangle).unwrap();
     for tile in [[0, 0], [1, 0]] {
         tiles.set(tile, [DepthInterval::new(1.0, 20.0).unwrap()]);
     }
     let mut batch = LightBatch::new();
     for (light, x) in [(3, -3.0), (5, 3.0), (9, 4.0)] {
         let sphere = Sphere::new(Vec3::new(x, 0.0, -10.0), 1.0).unwrap();
-        batch.push(light, &CameraSphere::new(&sphere, &camera).unwrap());
+        batch.push(light, &sphere.project(&camera).unwrap());
     }
     let mut lists = LightLists::new();
     Culler::new().cull(&batch, &tiles, &mut lists).unwrap();
 
     let ranges: &[u32] = bytemuck::cast_slice(lists.ranges());
     assert_eq!(ranges, [0, 1, 1, 3]);
-    let numbers: &[u8] = bytemuck::cast_slice(lists.numbers());
+    let numbers: &[u8] = bytemuck::cast_slice(lists.lights());
     assert_eq!(numbers, [3_u32, 5, 9].map(u32::to_ne_bytes).as_flattened());
 }
 
@@ -103,8 +106,8 @@ proptest! {
         depth in 0.1..60.0_f32,
         thickness in 1.0..3.0_f32,
     ) {
-        let stretch = Stretch::new(&shape, &camera()).unwrap();
-        let record = GpuStretch::new(&stretch, light);
+        let stretch = shape.project(&camera()).unwrap();
+        let record = GpuEllipsoid::new(&stretch, light);
         let bytes = bytemuck::bytes_of(&record);
         prop_assert_eq!(word(bytes, 28), light.to_ne_bytes());
         prop_assert_eq!(word(bytes, 44), [0; 4]);
@@ -117,7 +120,7 @@ proptest! {
     #[test]
     fn a_sphere_is_four_numbers(x in -9.0..9.0_f32, y in -9.0..9.0_f32, radius in 0.1..30.0_f32) {
         let sphere = Sphere::new(Vec3::new(x, y, -8.0), radius).unwrap();
-        let sphere = CameraSphere::new(&sphere, &camera()).unwrap();
+        let sphere = sphere.project(&camera()).unwrap();
         let record = GpuSphere::from(&sphere);
         let [x, y, z] = sphere.center().to_array();
         let numbers: [f32; 4] = bytemuck::cast(record);

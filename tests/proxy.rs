@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use proptest::prelude::*;
 use reference::{Shape, Vector};
 use stochastic_light_culling::{
-    Bound, Bounded, Direction, Ellipsoid, PhongLobe, Proxy,
+    Bounded, Direction, Ellipsoid, PhongLobe, Proxy, Shape as _,
     glam::{Mat3, Vec3},
 };
 

@@ -127,6 +127,44 @@ fn refuses_files_that_are_no_scene() {
     assert_refused("no_scene", &["--scene", "no/such.obj"], "no/such.obj");
 }
 
+/// A box, open to the front, and a block in it.
+fn box_at(place: [f32; 3]) -> String {
+    let corners = [
+        [[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]],
+        [[-1, 2, -1], [1, 2, -1], [1, 2, 1], [-1, 2, 1]],
+        [[-1, 0, -1], [1, 0, -1], [1, 2, -1], [-1, 2, -1]],
+        [[-1, 0, 1], [-1, 0, -1], [-1, 2, -1], [-1, 2, 1]],
+        [[1, 0, -1], [1, 0, 1], [1, 2, 1], [1, 2, -1]],
+        [[-1, 1, 1], [0, 1, 1], [0, 1, 0], [-1, 1, 0]],
+        [[-1, 0, 1], [0, 0, 1], [0, 1, 1], [-1, 1, 1]],
+    ];
+    let vertices = corners.as_flattened().iter().map(|corner| {
+        let [x, y, z] = [0, 1, 2].map(|i| place[i] + corner[i] as f32);
+        format!("v {x} {y} {z}\n")
+    });
+    let faces = (0..corners.len()).map(|face| {
+        let [a, b, c, d] = [1, 2, 3, 4].map(|corner| 4 * face + corner);
+        format!("f {a} {b} {c} {d}\n")
+    });
+    vertices.chain(faces).collect()
+}
+
+#[test]
+fn refuses_scenes_too_far_from_the_origin() {
+    let folder = fresh_folder("far");
+    let path = folder.join("box.obj");
+    let name = path.to_str().expect("the path is UTF-8");
+    let arguments = ["--scene", name, "--size", "64x48", "--vpls", "256"];
+    for place in [[1e7, 0.0, 0.0], [7e6, 9e6, -1e7]] {
+        fs::write(&path, box_at(place)).expect("a file can be written");
+        assert_refused("far_out", &arguments, "f32 positions are too coarse");
+    }
+    for place in [[0.0; 3], [1e3, -1e3, 2e3]] {
+        fs::write(&path, box_at(place)).expect("a file can be written");
+        small_run("not_far", &["--scene", name]);
+    }
+}
+
 #[test]
 fn refuses_a_folder_that_is_a_file() {
     command::assert_leaves_files_alone("render", &["--vpls", "64", "--size", "32x24"]);
@@ -137,6 +175,27 @@ fn helps() {
     let output = render(["--help"]);
     assert_eq!(output.status.code(), Some(0));
     assert!(String::from_utf8_lossy(&output.stdout).contains("--scene"));
+}
+
+/// `render --help | head -3`, and the like.
+#[test]
+fn examples_need_no_reader() {
+    for example in [
+        "render",
+        "report",
+        "engine",
+        "stability",
+        "tabulate",
+        "tightness",
+    ] {
+        command::assert_needs_no_reader(example, &["--help"]);
+    }
+    let out = fresh_path("unread");
+    let out = ["--out", out.to_str().expect("the path is UTF-8")];
+    let small = ["--size", "32x24", "--vpls", "64"];
+    command::assert_needs_no_reader("render", &[&small[..], &out].concat());
+    command::assert_needs_no_reader("engine", &["--frames", "3", "--lights", "64"]);
+    command::assert_needs_no_reader("stability", &["--cases", "2000"]);
 }
 
 /// A glTF file of one triangle whose accessor claims `count` vertices in a view of `length` bytes.

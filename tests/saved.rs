@@ -11,9 +11,9 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, CullCounters,
-    DepthInterval, Dielectric, Direction, Error, FresnelMajorant, Ggx, GgxLobe, HeightCorrelated,
-    Interleave, LambertLobe, NoFresnel, PhongLobe, PixelRectangle, Proxy, Roulette, Schlick,
-    Separable, TileGrid, TileRectangle, Vpl, Xi,
+    DepthInterval, Dielectric, Direction, Error, FrameSeed, FresnelMajorant, Ggx, GgxLobe,
+    HeightCorrelated, Incidence, Interleave, LambertLobe, NoFresnel, PhongLobe, PixelRectangle,
+    Proxy, Roulette, Schlick, Separable, TileGrid, TileRectangle, Vpl, Xi,
     glam::{Vec2, Vec3},
 };
 
@@ -94,7 +94,11 @@ fn each_is_saved_under_the_names_of_its_constructor() -> Result<(), Error> {
 fn lobes_and_lights_are_saved_with_what_they_are_made_of() -> Result<(), Error> {
     let (normal, incoming) = (Direction::Z, Direction::X);
     let (up, aside) = ([0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
-    let gold = GgxLobe::new(Ggx::new(0.25)?, Schlick::new(0.75)?, normal, incoming);
+    let gold = GgxLobe::new(
+        Ggx::new(0.25)?,
+        Schlick::new(0.75)?,
+        Incidence { normal, incoming },
+    );
     let saved_gold = json!({
         "ggx": { "roughness": 0.25 }, "fresnel": { "f0": 0.75 }, "normal": up, "incoming": aside,
     });
@@ -106,7 +110,15 @@ fn lobes_and_lights_are_saved_with_what_they_are_made_of() -> Result<(), Error> 
     assert_saved(&light, saved_light);
 
     let grain = AnisotropicGgx::new(0.5, 0.125)?;
-    let brushed = AnisotropicGgxLobe::new(grain, NoFresnel, normal, incoming, normal)?;
+    let brushed = AnisotropicGgxLobe::new(
+        grain,
+        NoFresnel,
+        Incidence {
+            normal,
+            incoming: normal,
+        },
+        incoming,
+    )?;
     let saved_brushed = json!({
         "ggx": { "roughness": [0.5, 0.125] }, "fresnel": null,
         "normal": up, "tangent": aside, "incoming": up,
@@ -115,7 +127,10 @@ fn lobes_and_lights_are_saved_with_what_they_are_made_of() -> Result<(), Error> 
     assert_saved(&brushed.separable(), saved_brushed);
 
     let plastic = json!({ "albedo": 0.5, "exponent": 40.0, "normal": up, "incoming": aside });
-    assert_saved(&PhongLobe::new(0.5, 40.0, normal, incoming)?, plastic);
+    assert_saved(
+        &PhongLobe::new(0.5, 40.0, Incidence { normal, incoming })?,
+        plastic,
+    );
     let spot = json!({ "albedo": 0.5, "exponent": 40.0, "normal": up, "incoming": null });
     assert_saved(&PhongLobe::about(0.5, 40.0, normal)?, spot);
     Ok(())
@@ -246,7 +261,7 @@ proptest! {
         size in [64..5000_u32, 64..5000_u32],
     ) {
         comes_back(&Roulette::new(delta as f32).unwrap())?;
-        comes_back(&Xi::hashed(light, 0, 0))?;
+        comes_back(&FrameSeed { frame: 0, seed: 0 }.xi(light))?;
         comes_back(&Interleave::new(size, width).unwrap())?;
         comes_back(&TileGrid::new(size, width).unwrap())?;
     }
@@ -273,14 +288,14 @@ proptest! {
         let (normal, incoming) = (lit.normal, lit.incoming);
         let [along, across] = roughness;
         let (smooth, grain) = (Ggx::new(along).unwrap(), AnisotropicGgx::new(along, across).unwrap());
-        let lobe = GgxLobe::new(smooth, Schlick::new(f0).unwrap(), normal, incoming);
+        let lobe = GgxLobe::new(smooth, Schlick::new(f0).unwrap(), Incidence { normal, incoming });
         comes_back(&Vpl::new(position, flux as f32, lobe).unwrap())?;
         comes_back(&Vpl::new(position, flux as f32, lobe.separable()).unwrap())?;
-        let phong = PhongLobe::new(f0, exponent, normal, incoming).unwrap();
+        let phong = PhongLobe::new(f0, exponent, Incidence { normal, incoming }).unwrap();
         comes_back(&Vpl::new(position, flux as f32, phong).unwrap())?;
         comes_back(&PhongLobe::about(f0, exponent, normal).unwrap())?;
         let tangent = Direction::new(tangent.to_f32()).unwrap();
-        if let Ok(lobe) = AnisotropicGgxLobe::new(grain, NoFresnel, normal, tangent, incoming) {
+        if let Ok(lobe) = AnisotropicGgxLobe::new(grain, NoFresnel, Incidence { normal, incoming }, tangent) {
             comes_back(&lobe)?;
             comes_back(&lobe.separable())?;
         }

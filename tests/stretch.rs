@@ -6,7 +6,7 @@ mod reference;
 use proptest::prelude::*;
 use reference::{Shape, Vector};
 use stochastic_light_culling::{
-    Camera, Stretch,
+    Camera, Incidence,
     glam::{Mat3, Vec3},
     stretch_matrix, stretch_rotation,
 };
@@ -34,7 +34,7 @@ proptest! {
         points in prop::collection::vec(generators::unit_vector(), 20),
     ) {
         let camera = Camera::new(view.from_world, view.projection).unwrap();
-        let stretch = Stretch::new(&ellipsoid, &camera).unwrap();
+        let stretch = ellipsoid.project(&camera).unwrap();
         let shape = Shape::from(ellipsoid);
         let [shortest, longest] = [ellipsoid.semi_axes().min_element(), ellipsoid.semi_axes().max_element()];
         let distance = ellipsoid.center().length() + view.from_world.w_axis.truncate().length();
@@ -57,7 +57,7 @@ proptest! {
         let camera = Camera::new(view.from_world, view.projection).unwrap();
         let s = stretch_matrix(&ellipsoid, &camera);
         let b = stretch_rotation(s);
-        let m = Stretch::new(&ellipsoid, &camera).unwrap().matrix();
+        let m = ellipsoid.project(&camera).unwrap().matrix();
 
         prop_assert!(difference(b * b.transpose(), Mat3::IDENTITY) < 1e-5);
         prop_assert!(b.determinant() > 0.0);
@@ -77,7 +77,7 @@ proptest! {
             Vec3::new(0.0, 0.0, 3.0), Vec3::ZERO, Vec3::Y, 1.0, 1.0, 0.1..10.0).unwrap();
         let s = stretch_matrix(&ellipsoid, &camera);
         let product = stretch_rotation(s) * s;
-        let m = Stretch::new(&ellipsoid, &camera).unwrap().matrix();
+        let m = ellipsoid.project(&camera).unwrap().matrix();
         // Where ‖Se_x‖ = ‖Se_y‖ to rounding, either frame is right.
         let tie = (s.x_axis.length() / s.y_axis.length() - 1.0).abs() < 1e-5;
         prop_assert!(tie || difference(product, m) < 1e-4, "{product} {m}");
@@ -93,18 +93,14 @@ fn empty_ellipsoid_has_no_stretch_and_a_boundless_one_covers_all() {
     let lobe = GgxLobe::new(
         Ggx::new(0.1).unwrap(),
         NoFresnel,
-        Direction::Z,
-        Direction::Z,
+        Incidence::head_on(Direction::Z),
     );
     let (roulette, xi) = (Roulette::new(1e-38).unwrap(), Xi::new(1e-9).unwrap());
     let dark = Vpl::new(Vec3::ZERO, 0.0, lobe).unwrap();
-    assert_eq!(
-        Stretch::new(&dark.bound(&roulette, xi).into(), &camera),
-        None
-    );
+    assert_eq!(dark.bound(&roulette, xi).project(&camera), None);
 
     let blinding = Vpl::new(Vec3::ONE, f32::MAX, lobe).unwrap();
-    let stretch = Stretch::new(&blinding.bound(&roulette, xi).into(), &camera).unwrap();
+    let stretch = blinding.bound(&roulette, xi).project(&camera).unwrap();
     assert!(stretch.center().length() <= 1.0 && stretch.matrix().is_finite());
     let point_light = Vpl::new(Vec3::ONE, f32::MAX, ConstantLobe).unwrap();
     assert!(point_light.bound(&roulette, xi).radius() > 1e20);

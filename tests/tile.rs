@@ -6,8 +6,8 @@ mod reference;
 use proptest::prelude::*;
 use reference::{Shape, Vector, exact::outward};
 use stochastic_light_culling::{
-    Bound, Bounded, Camera, CameraSphere, DepthInterval, Ellipsoid, Ggx, GgxLobe, HalfSpace,
-    NoFresnel, PixelRectangle, Sphere, Stretch, TileGrid, TileRectangle, TileTest,
+    Bounded, Camera, DepthInterval, Ellipsoid, Ggx, GgxLobe, HalfSpace, Incidence, NoFresnel,
+    Paper, PixelRectangle, ProjectedEllipsoid, Shape as _, Sphere, TileGrid, TileRectangle,
     glam::{Vec2, Vec3},
 };
 
@@ -18,7 +18,7 @@ fn tile_around(camera: &Camera, point: Vector) -> Option<(TileRectangle, DepthIn
         return None;
     }
     let (u, v) = (outward((x / depth).into()), outward((y / depth).into()));
-    let tile = TileRectangle::new(Vec2::new(u[0], v[0]), Vec2::new(u[1], v[1])).unwrap();
+    let tile = TileRectangle::new(Vec2::new(u[0], v[0]), Vec2::new(u[1], v[1])).ok()?;
     let [near, far] = outward(depth.into());
     let all = PixelRectangle {
         min: [0, 0],
@@ -45,7 +45,7 @@ fn widened(
 }
 
 /// The exact distance of the box test: from Mc′ to the box around the tile's image.
-fn box_distance(stretch: &Stretch, tile: &TileRectangle, depths: &DepthInterval) -> f64 {
+fn box_distance(stretch: &ProjectedEllipsoid, tile: &TileRectangle, depths: &DepthInterval) -> f64 {
     let m = stretch.matrix();
     let [mx, my, mz] = [m.x_axis, m.y_axis, m.z_axis].map(Vector::from);
     let center = Vector::from(stretch.center());
@@ -80,7 +80,7 @@ proptest! {
     ) {
         let view = if aim { view.aimed_at(ellipsoid.center(), distance) } else { view };
         let camera = Camera::new(view.from_world, view.projection).unwrap();
-        let stretch = Stretch::new(&ellipsoid, &camera).unwrap();
+        let stretch = ellipsoid.project(&camera).unwrap();
         let shape = Shape::from(ellipsoid);
         for (unit, depth) in points {
             let seen = view.to_camera_space(shape.point(unit * (depth * (1.0 - 1e-12))));
@@ -103,7 +103,7 @@ proptest! {
         let view = if aim { view.aimed_at(center, 2.0) } else { view };
         let camera = Camera::new(view.from_world, view.projection).unwrap();
         let sphere = Sphere::new(center, radius as f32).unwrap();
-        let before_camera = CameraSphere::new(&sphere, &camera).unwrap();
+        let before_camera = sphere.project(&camera).unwrap();
         let shape = Shape::from(sphere);
         for unit in points {
             let seen = view.to_camera_space(shape.point(unit * (1.0 - 1e-12)));
@@ -124,7 +124,7 @@ proptest! {
     ) {
         let view = if aim { view.aimed_at(position, 2.0) } else { view };
         let camera = Camera::new(view.from_world, view.projection).unwrap();
-        let half_space = HalfSpace::new(position, lit.normal, &camera);
+        let half_space = HalfSpace::new(position, lit.normal).unwrap().project(&camera);
         let normal = lit.surface.normal;
         for (way, distance, height) in points {
             // Along the surface, and a little or a lot above it.
@@ -155,9 +155,9 @@ proptest! {
     ) {
         let view = view.aimed_at(position, 3.0);
         let camera = Camera::new(view.from_world, view.projection).unwrap();
-        let lobe = GgxLobe::new(Ggx::new(roughness).unwrap(), NoFresnel, lit.normal, lit.incoming);
-        let spheroid = lobe.unit_bound().placed(position, scale as f32);
-        let stretch = Stretch::new(&Ellipsoid::from(spheroid), &camera).unwrap();
+        let lobe = GgxLobe::new(Ggx::new(roughness).unwrap(), NoFresnel, Incidence { normal: lit.normal, incoming: lit.incoming });
+        let spheroid = lobe.unit_bound_by(Paper).placed(position, scale as f32);
+        let stretch = Ellipsoid::from(spheroid).project(&camera).unwrap();
         let shape = Shape::from(spheroid);
         for unit in points {
             let seen = view.to_camera_space(shape.point(unit * (1.0 - 1e-12)));
@@ -177,7 +177,7 @@ proptest! {
     ) {
         let view = view.aimed_at(ellipsoid.center(), distance);
         let camera = Camera::new(view.from_world, view.projection).unwrap();
-        let stretch = Stretch::new(&ellipsoid, &camera).unwrap();
+        let stretch = ellipsoid.project(&camera).unwrap();
         let pixels = PixelRectangle { min: [tile.0, tile.1], max: [tile.0 + 1, tile.1 + 1] };
         let rectangle = camera.tile_rectangle([64, 64], pixels);
         let interval = DepthInterval::new(depths.0 as f32, (depths.0 * depths.1) as f32).unwrap();
@@ -250,14 +250,15 @@ fn lights_around_and_behind_the_camera() {
         (0.0, 50.0, true),
     ] {
         let center = Vec3::new(0.0, 0.0, center);
-        let sphere = CameraSphere::new(&Sphere::new(center, radius).unwrap(), &camera).unwrap();
+        let sphere = Sphere::new(center, radius)
+            .unwrap()
+            .project(&camera)
+            .unwrap();
         assert_eq!(sphere.touches(&all, &depths), touched);
         let axes = stochastic_light_culling::glam::Mat3::IDENTITY;
         let ellipsoid = Ellipsoid::new(center, axes, Vec3::splat(radius)).unwrap();
         assert_eq!(
-            Stretch::new(&ellipsoid, &camera)
-                .unwrap()
-                .touches(&all, &depths),
+            ellipsoid.project(&camera).unwrap().touches(&all, &depths),
             touched
         );
     }
@@ -283,6 +284,29 @@ proptest! {
         }
         for pair in slices.windows(2) {
             prop_assert!(pair[1].near() <= pair[0].far(), "{:?} leave a gap", pair);
+        }
+    }
+}
+
+#[test]
+fn halves_of_the_least_depths_are_intervals() {
+    let bits = (0..12).chain([8_388_606, 8_388_607, 8_388_608, 8_388_609]);
+    let depths: Vec<f32> = bits.map(f32::from_bits).collect();
+    for near in depths.iter().copied().filter(|depth| *depth > 0.0) {
+        for far in depths.iter().copied().filter(|depth| *depth >= near) {
+            let halves = DepthInterval::half_z([near, far]).unwrap();
+            for half in halves {
+                let [low, high] = [half.near(), half.far()];
+                assert!(DepthInterval::new(low, high).is_ok(), "{low:e} {high:e}");
+                assert!(near <= low && high <= far, "{low:e} {high:e}");
+            }
+            let ends = [halves[0].near(), halves[1].far()];
+            assert_eq!(ends, [near, far]);
+            assert_eq!(halves[0].far(), halves[1].near());
+            // The nearer part holds the middle.
+            let [nearer, farther] = DepthInterval::modified_half_z([near, far]);
+            assert!(nearer.is_some(), "{near:e} {far:e}");
+            assert!(farther.is_none() || near < far, "{near:e} {far:e}");
         }
     }
 }

@@ -7,8 +7,9 @@ mod reference;
 
 use reference::{Brdf, Fresnel, Masking, Surface, Vector};
 use stochastic_light_culling::{
-    Bound, Bounded, Camera, DepthInterval, Direction, Ggx, GgxLobe, Interleave, PixelRectangle,
-    Roulette, Schlick, Stretch, TileGrid, TileRectangle, TileTest, Vpl, Xi, glam::Vec3,
+    Bounded, Camera, DepthInterval, Direction, FrameSeed, Ggx, GgxLobe, Incidence, Interleave,
+    PixelRectangle, ProjectedEllipsoid, Roulette, Schlick, Shape, TileGrid, TileRectangle, Vpl, Xi,
+    glam::Vec3,
 };
 
 const FRAMES: u32 = 100_000;
@@ -40,8 +41,10 @@ fn single_lights() {
                 let lobe = GgxLobe::new(
                     Ggx::new(roughness).unwrap(),
                     schlick,
-                    Direction::Z,
-                    incoming,
+                    Incidence {
+                        normal: Direction::Z,
+                        incoming,
+                    },
                 );
                 let vpl = Vpl::new(Vec3::ZERO, 2.0, lobe).unwrap();
                 let outgoing = *Direction::new(Vec3::new(1.0, -0.1, height)).unwrap();
@@ -60,7 +63,7 @@ fn single_lights() {
 
                 let (mut sum, mut weights) = (0.0, 0.0);
                 for frame in 0..FRAMES {
-                    let xi = Xi::hashed(light, frame, 2026);
+                    let xi = FrameSeed { frame, seed: 2026 }.xi(light);
                     let intensity = vpl.radiant_intensity(outgoing);
                     sum += f64::from(roulette.estimate(intensity, distance_squared, xi));
                     weights += f64::from(roulette.weight(intensity, distance_squared, xi));
@@ -92,12 +95,16 @@ impl Scene {
         let camera = Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 0.9, 1.5, 0.1..100.0).unwrap();
         let interleave = Interleave::new(IMAGE, 2).unwrap();
         let lights = (0..24_u32).map(|i| {
-            let random = |k: u32| 2.0 * Xi::hashed(i, k, 99).get() - 1.0;
+            let random = |k: u32| 2.0 * FrameSeed { frame: k, seed: 99 }.xi(i).get() - 1.0;
             let normal = Direction::new(Vec3::new(random(0), -0.5, random(1))).unwrap();
             let slant = Vec3::new(random(2), random(3), random(4));
             let incoming = Direction::new(*normal + 0.9 * slant).unwrap();
             let ggx = Ggx::new([0.05, 0.1, 0.3, 0.8][i as usize % 4]).unwrap();
-            let lobe = GgxLobe::new(ggx, Schlick::new(0.5).unwrap(), normal, incoming);
+            let lobe = GgxLobe::new(
+                ggx,
+                Schlick::new(0.5).unwrap(),
+                Incidence { normal, incoming },
+            );
             let position = Vec3::new(3.0 * random(5), 0.6 + 0.4 * random(6), 3.0 * random(7));
             Vpl::new(position, interleave.weight() * 0.2, lobe).unwrap()
         });
@@ -204,13 +211,13 @@ fn a_small_image() {
     let mut image = [0.0; (IMAGE[0] * IMAGE[1]) as usize];
     let (mut shaded, mut skipped) = (0, 0);
     for frame in 0..FRAMES {
-        let lights: Vec<(Xi, Option<Stretch>)> = (0_u32..)
+        let lights: Vec<(Xi, Option<ProjectedEllipsoid>)> = (0_u32..)
             .zip(scene.lights.iter().zip(&unit_bounds))
             .map(|(i, (light, unit_bound))| {
-                let xi = Xi::hashed(i, frame, 7);
+                let xi = FrameSeed { frame, seed: 7 }.xi(i);
                 let scale = roulette.scale(light.flux(), xi);
                 let bound = unit_bound.placed(light.position(), scale);
-                (xi, Stretch::new(&bound.into(), &scene.camera))
+                (xi, bound.project(&scene.camera))
             })
             .collect();
         for tile in &tiles {
@@ -262,9 +269,15 @@ fn hashed_numbers_are_uniform() {
     const BINS: usize = 64;
     type Draw = fn(u32) -> Xi;
     let draws: [Draw; 3] = [
-        |i| Xi::hashed(i, 0, 0),
-        |i| Xi::hashed(0, i, 0),
-        |i| Xi::hashed(i % 317, i / 317, 5),
+        |i| FrameSeed { frame: 0, seed: 0 }.xi(i),
+        |i| FrameSeed { frame: i, seed: 0 }.xi(0),
+        |i| {
+            FrameSeed {
+                frame: i / 317,
+                seed: 5,
+            }
+            .xi(i % 317)
+        },
     ];
     for draw in draws {
         let mut bins = [0.0; BINS];
@@ -305,4 +318,40 @@ fn estimator_at_its_edges() {
     );
     assert!((roulette.radius(0.8, xi) - 4.0).abs() < 1e-6);
     assert_eq!(roulette.scale(0.0, xi), 0.0);
+}
+
+/// √(Φ/(δξ)) is rounded up, wherever the three lie, and by little.
+#[test]
+fn scale_is_not_below_the_exact_one() {
+    let least = f32::from_bits(1);
+    let any = |rng: &mut fastrand::Rng, most: f32| {
+        // Spread over decades, subnormal numbers and both ends included.
+        match rng.u32(0..12) {
+            0 => least,
+            1 => most,
+            2 => f32::from_bits(rng.u32(1..=16)),
+            3 => f32::from_bits(rng.u32(1..=1 << 23)),
+            _ => f32::from_bits(rng.u32(1..=most.to_bits())),
+        }
+    };
+    let mut rng = fastrand::Rng::with_seed(5);
+    for _ in 0..1_000_000 {
+        let delta = any(&mut rng, f32::MAX);
+        let xi = any(&mut rng, 1.0);
+        let flux = any(&mut rng, f32::MAX);
+        let roulette = Roulette::new(delta).unwrap();
+        let scale = roulette.scale(flux, Xi::new(xi).unwrap());
+        let exact = (f64::from(flux) / (f64::from(delta) * f64::from(xi))).sqrt();
+        let (low, high) = (exact * (1.0 - 1e-15), exact * (1.0 + 1e-6));
+        let normal = [f32::MIN_POSITIVE, f32::MAX].map(f64::from);
+        let scaled = f64::from(scale);
+        assert!(scaled >= low.min(normal[1]), "{flux:e} {delta:e} {xi:e}");
+        assert!(scaled <= high.max(normal[0]), "{flux:e} {delta:e} {xi:e}");
+        // To the bit what the plain formula gives where that has no subnormal number in it.
+        let product = delta.sqrt() * xi.sqrt();
+        if product >= f32::MIN_POSITIVE {
+            let enlarged = flux.sqrt() / product * (1.0 + 3.5 * f32::EPSILON);
+            assert_eq!(scale, enlarged.clamp(f32::MIN_POSITIVE, f32::MAX));
+        }
+    }
 }

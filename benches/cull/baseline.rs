@@ -49,11 +49,11 @@ impl Subregion {
     pub fn cull(&mut self) {
         for (tile, lists) in self.tiles.iter().zip(&mut self.lists) {
             lists.iter_mut().for_each(Vec::clear);
-            for (number, light) in (0..).zip(&self.lights) {
+            for (i, light) in (0..).zip(&self.lights) {
                 let [low, high] = light.bounds(tile);
                 for (list, depths) in lists.iter_mut().zip(tile.depths) {
                     if light.touches(low, high, depths) {
-                        list.push(number);
+                        list.push(i);
                     }
                 }
             }

@@ -4,42 +4,43 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, measurement::WallTime};
 use stochastic_light_culling::{
-    BatchBuilder, BatchLobe, BatchShape, Bounded, Camera, CameraSphere, DepthOrder, Direction,
-    Fresnel, Ggx, GgxLobe, LambertLobe, LightBatch, NoFresnel, Roulette, Schlick, Stretch, Vpl, Xi,
+    BatchBuilder, Camera, DepthOrder, Direction, FrameSeed, Fresnel, Ggx, GgxLobe, Incidence,
+    LambertLobe, LightBatch, Lobe, NoFresnel, Paper, Projected, Roulette, Schlick, Tight, Vpl, Xi,
     glam::Vec3,
 };
 
 use crate::workload;
 
-/// Lights in a ball before the camera.
-fn lights<L: BatchLobe>(lobe: impl Fn(u32, Direction, Direction) -> L) -> Vec<(Vpl<L>, Xi)> {
+/// Lights in a ball in front of the camera.
+fn lights<L: Lobe>(lobe: impl Fn(u32, Incidence) -> L) -> Vec<(Vpl<L>, Xi)> {
     let light = |i| {
-        let random = |k| 2.0 * Xi::hashed(i, k, 1).get() - 1.0;
+        let random = |frame| 2.0 * FrameSeed { frame, seed: 1 }.xi(i).get() - 1.0;
         let vector = |k| Vec3::new(random(k), random(k + 1), random(k + 2));
         let normal = Direction::new(vector(0)).expect("not zero");
         let incoming = Direction::new(*normal + 0.9 * vector(3)).expect("not zero");
+        let lobe = lobe(i, Incidence { normal, incoming });
         let position = 10.0 * vector(6) - 25.0 * Vec3::Z;
-        let light = Vpl::new(position, 1.0, lobe(i, normal, incoming)).expect("in range");
-        (light, Xi::hashed(i, 0, 0))
+        let light = Vpl::new(position, 1.0, lobe).expect("in range");
+        (light, FrameSeed { frame: 0, seed: 0 }.xi(i))
     };
     (0..workload::LIGHTS as u32).map(light).collect()
 }
 
 fn glossy_lights<F: Fresnel>(fresnel: F) -> Vec<(Vpl<GgxLobe<F>>, Xi)> {
-    lights(|i, normal, incoming| {
+    lights(|i, incidence| {
         let roughness = [0.05, 0.1, 0.2, 0.4][i as usize % 4];
         let ggx = Ggx::new(roughness).expect("in range");
-        GgxLobe::new(ggx, fresnel, normal, incoming)
+        GgxLobe::new(ggx, fresnel, incidence)
     })
 }
 
 /// Times making a batch of `lights`, one by one and sixteen by sixteen.
-fn build<L: Bounded, T: BatchShape>(
+fn build<L: Lobe, P: Projected>(
     group: &mut BenchmarkGroup<WallTime>,
     name: &str,
     lights: &[(Vpl<L>, Xi)],
-    one: impl Fn(&Vpl<L>, Xi) -> Option<T>,
-    many: impl Fn(&[(Vpl<L>, Xi)], &mut LightBatch<T>),
+    one: impl Fn(&Vpl<L>, Xi) -> Option<P>,
+    many: impl Fn(&[(Vpl<L>, Xi)], &mut LightBatch<P>),
 ) {
     let mut batch = LightBatch::new();
     group.bench_function(format!("{name}, one by one"), |bencher| {
@@ -57,7 +58,7 @@ fn build<L: Bounded, T: BatchShape>(
     });
 }
 
-fn numbered<L>(lights: &[(Vpl<L>, Xi)]) -> impl Iterator<Item = (u32, &Vpl<L>, Xi)> {
+fn indexed<L>(lights: &[(Vpl<L>, Xi)]) -> impl Iterator<Item = (u32, &Vpl<L>, Xi)> {
     (0..).zip(lights).map(|(i, (light, xi))| (i, light, *xi))
 }
 
@@ -74,15 +75,15 @@ fn glossy<F: Fresnel>(
         group,
         &format!("spheroid, {name}"),
         &lights,
-        |light, xi| Stretch::new(&light.bound(roulette, xi).into(), camera),
-        |lights, batch| builder.add(numbered(lights), batch),
+        |light, xi| light.bound_by(Paper, roulette, xi).project(camera),
+        |lights, batch| builder.add_by(Paper, indexed(lights), batch),
     );
     build(
         group,
         &format!("tight, {name}"),
         &lights,
-        |light, xi| Stretch::new(&light.tight_bound(roulette, xi), camera),
-        |lights, batch| builder.add_tight(numbered(lights), batch),
+        |light, xi| light.bound_by(Tight, roulette, xi).project(camera),
+        |lights, batch| builder.add_by(Tight, indexed(lights), batch),
     );
 }
 
@@ -95,14 +96,14 @@ pub fn building(criterion: &mut Criterion) {
     let schlick = Schlick::new(0.9).expect("in range");
     glossy(&mut group, "Schlick", schlick, &roulette, &camera);
 
-    let diffuse = lights(|_, normal, _| LambertLobe::new(0.8, normal).expect("in range"));
+    let diffuse = lights(|_, incidence| LambertLobe::new(0.8, incidence.normal).expect("in range"));
     let builder = BatchBuilder::new(&roulette, &camera);
     build(
         &mut group,
         "diffuse",
         &diffuse,
-        |light, xi| CameraSphere::new(&light.bound(&roulette, xi), &camera),
-        |lights, batch| builder.add(numbered(lights), batch),
+        |light, xi| light.bound(&roulette, xi).project(&camera),
+        |lights, batch| builder.add(indexed(lights), batch),
     );
 
     let mut order = DepthOrder::new();

@@ -4,12 +4,13 @@
 use std::f32::consts::{PI, TAU};
 
 use stochastic_light_culling::{
-    Camera, DepthInterval, Ellipsoid, LightBatch, Stretch, TileDepths, TileRectangle, Xi,
+    Camera, DepthInterval, Ellipsoid, FrameSeed, LightBatch, ProjectedEllipsoid, TileDepths,
+    TileRectangle,
     glam::{Mat3, Vec2, Vec3},
 };
 
 /// A frame of (15·`scale`)×(9·`scale`) tiles and 1024·`scale`² lights, from near to far.
-pub fn frame(scale: u32) -> (LightBatch<Stretch>, TileDepths) {
+pub fn frame(scale: u32) -> (LightBatch<ProjectedEllipsoid>, TileDepths) {
     let fov = PI / 3.0;
     let camera = Camera::look_at(
         Vec3::ZERO,
@@ -24,7 +25,7 @@ pub fn frame(scale: u32) -> (LightBatch<Stretch>, TileDepths) {
     (lights(scale, slopes, &camera), tiles(scale, slopes))
 }
 
-fn lights(scale: u32, slopes: Vec2, camera: &Camera) -> LightBatch<Stretch> {
+fn lights(scale: u32, slopes: Vec2, camera: &Camera) -> LightBatch<ProjectedEllipsoid> {
     let mut lights: Vec<_> = (0..1024 * scale * scale)
         .map(|light| (light, ellipsoid(light, scale, slopes)))
         .collect();
@@ -33,13 +34,13 @@ fn lights(scale: u32, slopes: Vec2, camera: &Camera) -> LightBatch<Stretch> {
     batch.extend(
         lights
             .iter()
-            .filter_map(|(light, ellipsoid)| Some((*light, Stretch::new(ellipsoid, camera)?))),
+            .filter_map(|(light, ellipsoid)| Some((*light, ellipsoid.project(camera)?))),
     );
     batch
 }
 
 fn ellipsoid(light: u32, scale: u32, slopes: Vec2) -> Ellipsoid {
-    let unit = |number| Xi::hashed(light, number, 3).get();
+    let unit = |frame| FrameSeed { frame, seed: 3 }.xi(light).get();
     let depth = (1.0 + unit(0) * (50_f32.powi(3) - 1.0)).cbrt();
     let across = Vec2::new(2.0 * unit(1) - 1.0, 2.0 * unit(2) - 1.0) * slopes * depth;
     let short = 0.15 * 20_f32.powf(unit(3)) / (scale as f32).powf(0.55);
@@ -66,10 +67,10 @@ fn tiles(scale: u32, slopes: Vec2) -> TileDepths {
     let rectangle = |[x, y]: [u32; 2]| {
         TileRectangle::new(corner([x, y]), corner([x + 1, y + 1])).expect("in order")
     };
-    let mut tiles = TileDepths::new(size, 2, rectangle).expect("not empty");
+    let mut tiles = TileDepths::from_rectangles(size, 2, rectangle).expect("not empty");
     for y in 0..size[1] {
         for x in 0..size[0] {
-            let unit = |number| Xi::hashed(x, y, number).get();
+            let unit = |seed| FrameSeed { frame: y, seed }.xi(x).get();
             let (tx, ty) = (x as f32 / scale as f32, y as f32 / scale as f32);
             let waves = 0.3 * (0.45 * tx + 0.3).sin() * (0.6 * ty).cos();
             let f = 0.5 + waves + 0.15 * (0.9 * tx - 0.7 * ty).sin();

@@ -3,7 +3,7 @@
 use parry3d::math::{Pose, Vector};
 use parry3d::query;
 use parry3d::shape::{Ball, ConvexPolyhedron};
-use stochastic_light_culling::{DepthInterval, Stretch, TileRectangle};
+use stochastic_light_culling::{DepthInterval, ProjectedEllipsoid, TileRectangle};
 
 /// The faces, cut into triangles; corners are numbered by x, y and z, in bits.
 const TRIANGLES: [[u32; 3]; 12] = [
@@ -23,7 +23,7 @@ const TRIANGLES: [[u32; 3]; 12] = [
 
 /// The tile's image.
 pub fn of_tile(
-    light: &Stretch,
+    light: &ProjectedEllipsoid,
     rectangle: &TileRectangle,
     depths: &DepthInterval,
 ) -> ConvexPolyhedron {
@@ -39,7 +39,7 @@ pub fn of_tile(
     ConvexPolyhedron::from_convex_mesh(corners, &TRIANGLES).expect("tiles here have a volume")
 }
 
-pub fn meets_ball(polyhedron: &ConvexPolyhedron, light: &Stretch) -> bool {
+pub fn meets_ball(polyhedron: &ConvexPolyhedron, light: &ProjectedEllipsoid) -> bool {
     let c = light.center();
     let place = Pose::translation(c.x, c.y, c.z);
     query::intersection_test(&place, &Ball::new(1.0), &Pose::identity(), polyhedron)

@@ -1,5 +1,9 @@
-//! What all examples do with their command line: whatever is wrong is said in one line, with status 2.
+//! What all examples do with their command line: whatever is wrong is said in one line, with status 2. They
+//! print by [`say`], not by `println!`, which panics once nobody reads.
 
+use std::fmt::Arguments;
+use std::io;
+use std::io::{ErrorKind::BrokenPipe, Write};
 use std::process::ExitCode;
 
 use clap::{Parser, error::ErrorKind};
@@ -10,7 +14,8 @@ pub fn run<A: Parser>(work: impl FnOnce(A) -> Result<(), String>) -> ExitCode {
         Ok(arguments) => work(arguments),
         Err(error) => match error.kind() {
             ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-                error.print().map_err(|error| error.to_string())
+                said(error.print());
+                Ok(())
             }
             _ => Err(first_paragraph(&error)),
         },
@@ -20,6 +25,23 @@ pub fn run<A: Parser>(work: impl FnOnce(A) -> Result<(), String>) -> ExitCode {
         Err(reason) => {
             eprintln!("error: {reason}");
             ExitCode::from(2)
+        }
+    }
+}
+
+/// Prints `line` to standard output. Gives whether anybody reads: there is nothing wrong if nobody does.
+pub fn say(line: Arguments) -> bool {
+    said(writeln!(io::stdout(), "{line}"))
+}
+
+/// Whether it could be printed; ends the process if it could not though somebody reads.
+fn said(printed: io::Result<()>) -> bool {
+    match printed {
+        Ok(()) => true,
+        Err(error) if error.kind() == BrokenPipe => false,
+        Err(error) => {
+            eprintln!("error: cannot print: {error}");
+            std::process::exit(2)
         }
     }
 }

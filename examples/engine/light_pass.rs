@@ -1,8 +1,9 @@
 //! The part of an engine that this crate does most of: from lights and a depth buffer to lists.
 
 use stochastic_light_culling::{
-    BatchBuilder, Camera, CullCounters, Culler, DepthInterval, DepthOrder, Ellipsoid, Error,
-    GgxLobe, LightBatch, LightLists, Roulette, Schlick, Stretch, TileDepths, TileGrid, Vpl, Xi,
+    BatchBuilder, Bounded, Camera, CullCounters, Culler, DepthInterval, DepthOrder, Ellipsoid,
+    Error, FrameSeed, GgxLobe, LightBatch, LightLists, ProjectedEllipsoid, Roulette, Schlick,
+    TileDepths, TileGrid, Vpl, Xi,
 };
 
 pub type Light = Vpl<GgxLobe<Schlick>>;
@@ -18,8 +19,8 @@ pub struct LightPass {
     grid: TileGrid,
     tiles: TileDepths,
     order: DepthOrder,
-    batch: LightBatch<Stretch>,
-    culler: Culler<Stretch>,
+    batch: LightBatch<ProjectedEllipsoid>,
+    culler: Culler<ProjectedEllipsoid>,
     lists: LightLists,
 }
 
@@ -33,14 +34,13 @@ impl LightPass {
         tile_size: u32,
     ) -> Result<Self, Error> {
         let grid = TileGrid::new(size, tile_size)?;
-        let rectangle = |tile| camera.tile_rectangle(size, grid.pixels(tile));
         Ok(Self {
             order: DepthOrder::new(),
             lights: lights.into_iter().map(with_bound).collect(),
             roulette: Roulette::new(delta)?,
             size,
             grid,
-            tiles: TileDepths::new(grid.size(), 2, rectangle)?,
+            tiles: TileDepths::new(&grid, camera, 2)?,
             batch: LightBatch::new(),
             culler: Culler::new(),
             lists: LightLists::new(),
@@ -64,10 +64,10 @@ impl LightPass {
         // From near to far, which makes culling faster and changes nothing else.
         let positions = self.lights.iter().map(|(light, _)| light.position());
         let order = self.order.of(positions, camera);
-        let placed = order.iter().map(|number| {
-            let (light, unit_bound) = &self.lights[*number as usize];
-            let scale = self.roulette.scale(light.flux(), xi(*number, frame));
-            (*number, unit_bound, light.position(), scale)
+        let placed = order.iter().map(|index| {
+            let (light, unit_bound) = &self.lights[*index as usize];
+            let scale = self.roulette.scale(light.flux(), xi(*index, frame));
+            (*index, unit_bound, light.position(), scale)
         });
         self.batch.clear();
         BatchBuilder::new(&self.roulette, camera).add_placed(placed, &mut self.batch);
@@ -89,13 +89,13 @@ impl LightPass {
             return 0.0; // sky
         };
         let point = camera.to_world_space(camera.point_in_pixel(self.size, pixel, depth));
-        let from = |number: &u32| {
-            let (light, _) = &self.lights[*number as usize];
+        let from = |index: &u32| {
+            let (light, _) = &self.lights[*index as usize];
             let way = point - light.position();
             let intensity = light.radiant_intensity(way.normalize());
             let distance_squared = way.length_squared();
             self.roulette
-                .estimate(intensity, distance_squared, xi(*number, frame))
+                .estimate(intensity, distance_squared, xi(*index, frame))
         };
         // From 0, since the sum of no numbers is −0.
         let list = self.lists.of(tile, interval);
@@ -114,10 +114,10 @@ impl LightPass {
 }
 
 fn with_bound(light: Light) -> (Light, Ellipsoid) {
-    (light, light.lobe().tight_bound())
+    (light, light.lobe().unit_bound())
 }
 
 /// Each light's, new in each frame, for culling and for shading.
 fn xi(light: u32, frame: u32) -> Xi {
-    Xi::hashed(light, frame, SEED)
+    FrameSeed { frame, seed: SEED }.xi(light)
 }

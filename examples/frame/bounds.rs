@@ -3,8 +3,8 @@
 use clap::ValueEnum;
 use rayon::prelude::*;
 use stochastic_light_culling::{
-    BatchShape, Camera, CameraSphere, GgxLobe, Interleave, LambertLobe, LightBatch, Roulette,
-    Schlick, Spheroid, Stretch,
+    Camera, GgxLobe, Interleave, LambertLobe, LightBatch, Paper, Projected, ProjectedEllipsoid,
+    ProjectedSphere, Roulette, Schlick, Spheroid, Tight, Triaxial,
 };
 
 use super::Light;
@@ -46,48 +46,66 @@ impl BoundKind {
     }
 }
 
-pub fn spheroid(light: &GlossyLight, roulette: &Roulette, camera: &Camera) -> Option<Stretch> {
-    Stretch::new(&range(light, roulette).into(), camera)
+pub fn spheroid(
+    light: &GlossyLight,
+    roulette: &Roulette,
+    camera: &Camera,
+) -> Option<ProjectedEllipsoid> {
+    range(light, roulette).project(camera)
 }
 
-pub fn triaxial(light: &GlossyLight, roulette: &Roulette, camera: &Camera) -> Option<Stretch> {
-    Stretch::new(&light.vpl.triaxial_bound(roulette, light.xi), camera)
+pub fn triaxial(
+    light: &GlossyLight,
+    roulette: &Roulette,
+    camera: &Camera,
+) -> Option<ProjectedEllipsoid> {
+    light
+        .vpl
+        .bound_by(Triaxial, roulette, light.xi)
+        .project(camera)
 }
 
-pub fn tight(light: &GlossyLight, roulette: &Roulette, camera: &Camera) -> Option<Stretch> {
-    Stretch::new(&light.vpl.tight_bound(roulette, light.xi), camera)
+pub fn tight(
+    light: &GlossyLight,
+    roulette: &Roulette,
+    camera: &Camera,
+) -> Option<ProjectedEllipsoid> {
+    light
+        .vpl
+        .bound_by(Tight, roulette, light.xi)
+        .project(camera)
 }
 
 pub fn enclosing_sphere(
     light: &GlossyLight,
     roulette: &Roulette,
     camera: &Camera,
-) -> Option<CameraSphere> {
-    CameraSphere::new(&range(light, roulette).enclosing_sphere(), camera)
+) -> Option<ProjectedSphere> {
+    range(light, roulette).enclosing_sphere().project(camera)
 }
 
 pub fn sphere_at_light(
     light: &GlossyLight,
     roulette: &Roulette,
     camera: &Camera,
-) -> Option<CameraSphere> {
-    CameraSphere::new(&range(light, roulette).sphere_at_focus(), camera)
+) -> Option<ProjectedSphere> {
+    range(light, roulette).sphere_at_focus().project(camera)
 }
 
 pub fn diffuse_sphere(
     light: &Light<LambertLobe>,
     roulette: &Roulette,
     camera: &Camera,
-) -> Option<CameraSphere> {
-    CameraSphere::new(&light.vpl.bound(roulette, light.xi), camera)
+) -> Option<ProjectedSphere> {
+    light.vpl.bound(roulette, light.xi).project(camera)
 }
 
 fn range(light: &GlossyLight, roulette: &Roulette) -> Spheroid {
-    light.vpl.bound(roulette, light.xi)
+    light.vpl.bound_by(Paper, roulette, light.xi)
 }
 
-/// The lights of each subregion, in the order of their numbers; those that reach nowhere are left out.
-pub fn batches<L: Sync, T: BatchShape + Send>(
+/// The lights of each subregion, by index; those that reach nowhere are left out.
+pub fn batches<L: Sync, T: Projected + Send>(
     lights: &[Light<L>],
     interleave: &Interleave,
     shape: impl Fn(&Light<L>) -> Option<T> + Sync,
@@ -97,11 +115,9 @@ pub fn batches<L: Sync, T: BatchShape + Send>(
         .into_par_iter()
         .map(|subregion| {
             let mut batch = LightBatch::new();
-            let numbers = (0..interleave.lights_in(subregion, count))
+            let indices = (0..interleave.lights_in(subregion, count))
                 .map(|local| interleave.join_light(subregion, local));
-            batch.extend(
-                numbers.filter_map(|number| Some((number, shape(&lights[number as usize])?))),
-            );
+            batch.extend(indices.filter_map(|i| Some((i, shape(&lights[i as usize])?))));
             batch
         })
         .collect()

@@ -1,17 +1,17 @@
 //! Which lights may touch which tile.
 
 use rayon::prelude::*;
-use stochastic_light_culling::{BatchShape, Culler, Error, LightBatch, LightLists};
+use stochastic_light_culling::{BoxTest, Culler, Error, LightBatch, LightLists};
 
 use super::Tiles;
 
 /// A culler for each subregion, with the lists that it fills: memory that is used frame after frame.
-pub struct Cullers<T: BatchShape> {
+pub struct Cullers<T: BoxTest> {
     cullers: Vec<Culler<T>>,
     pub lists: Vec<LightLists>,
 }
 
-impl<T: BatchShape + Send + Sync> Cullers<T> {
+impl<T: BoxTest + Send + Sync> Cullers<T> {
     pub fn new(tiles: &Tiles) -> Self {
         let count = tiles.subregions().len();
         Self {

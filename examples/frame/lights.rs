@@ -1,7 +1,8 @@
 //! The lights of a frame: lit points with their share of the flux and their ξ.
 
 use stochastic_light_culling::{
-    Direction, Error, GgxLobe, Interleave, LambertLobe, Lobe, Schlick, Vpl, Xi, glam::Vec3,
+    Direction, Error, FrameSeed, GgxLobe, Interleave, LambertLobe, Lobe, Schlick, Vpl, Xi,
+    glam::Vec3,
 };
 
 use crate::scene::{LitPoint, LitPoints, Surface};
@@ -50,7 +51,7 @@ fn lights<L: Lobe + Copy>(
     first: u32,
     seed: u32,
 ) -> Result<Vec<Light<L>>, Error> {
-    let light = |(number, point): (u32, &LitPoint<L>)| {
+    let light = |(i, point): (u32, &LitPoint<L>)| {
         let brightest = point.flux.max_element();
         Ok(Light {
             vpl: Vpl::new(point.position, weight * brightest, point.lobe)?,
@@ -60,7 +61,7 @@ fn lights<L: Lobe + Copy>(
             } else {
                 Vec3::ZERO
             },
-            xi: Xi::hashed(number, 0, seed),
+            xi: FrameSeed { frame: 0, seed }.xi(i),
         })
     };
     (first..).zip(points).map(light).collect()

@@ -2,7 +2,9 @@
 
 use std::time::Instant;
 
-use stochastic_light_culling::{BatchShape, Camera, Error, LambertLobe, Lobe, Roulette};
+use stochastic_light_culling::{
+    BoxTest, Camera, Error, LambertLobe, Lobe, Roulette, Tight, Triaxial,
+};
 
 use super::bounds::{self, BoundKind, GlossyLight};
 use super::cull::Cullers;
@@ -64,7 +66,7 @@ pub fn measure_diffuse(
     )
 }
 
-fn measure<L: Lobe + Sync, T: BatchShape + Send + Sync>(
+fn measure<L: Lobe + Sync, T: BoxTest + Send + Sync>(
     (frame, tilings, camera): (&Frame, &[Tiling], &Camera),
     lights: &[Light<L>],
     bound: BoundKind,

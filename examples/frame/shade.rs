@@ -82,8 +82,8 @@ pub fn shade<'a, L: Lobe + Sync>(
     let shade_pixel = |pixel: [u32; 2]| {
         let surface = frame.surfaces.at(pixel);
         let mut sums = Sums::default();
-        for number in list_of(pixel, surface.depth)? {
-            let light = &lights[*number as usize];
+        for i in list_of(pixel, surface.depth)? {
+            let light = &lights[*i as usize];
             if !(refined && light.has_back_to(surface)) {
                 sums.add(frame, light, surface);
             }

@@ -102,10 +102,12 @@ impl Tiles {
         let slicing = Parting::new(slicing, surfaces);
         let subregion = |subregion| {
             let grid = TileGrid::new(interleave.subregion_size(subregion), tile_size)?;
-            let mut depths = TileDepths::new(grid.size(), slicing.intervals(), |tile| {
+            let rectangle = |tile| {
                 let around = interleave.join_pixels(subregion, grid.pixels(tile));
                 camera.tile_rectangle(surfaces.image_size, around)
-            })?;
+            };
+            let mut depths =
+                TileDepths::from_rectangles(grid.size(), slicing.intervals(), rectangle)?;
             let mut intervals = Vec::new();
             for tile in grid.tiles() {
                 let pixels = grid.pixels(tile).pixels();

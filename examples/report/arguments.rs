@@ -40,7 +40,7 @@ pub enum StudyKind {
     Functions,
     /// Volumes of the bounds over that of the smallest ellipsoid, and nanoseconds
     Tightness,
-    /// Lights that a list holds in vain, and nanoseconds, for each test, tile size and slicing
+    /// Lights that a list holds and no pixel accepts, and nanoseconds, for each test, tile size and slicing
     Tests,
     /// Error and milliseconds against the number of lights
     VplCount,

@@ -1,6 +1,6 @@
 //! Ways to light a frame by its glossy lights.
 
-use stochastic_light_culling::{Interleave, Xi, glam::Vec3};
+use stochastic_light_culling::{FrameSeed, Interleave, Xi, glam::Vec3};
 
 use crate::baseline::{cluster, splat};
 use crate::figure::{Line, Look};
@@ -128,9 +128,10 @@ impl<'a> Stage<'a> {
     /// The same lights in as many frames as there are repetitions: only ξ differs.
     pub fn frames(&self) -> Vec<Vec<GlossyLight>> {
         let lights = self.lights(0);
+        let seed = self.subject.seed;
         let again = |frame| {
-            let drawn = |(light, number): (&GlossyLight, u32)| GlossyLight {
-                xi: Xi::hashed(number, frame, self.subject.seed),
+            let drawn = |(light, i): (&GlossyLight, u32)| GlossyLight {
+                xi: FrameSeed { frame, seed }.xi(i),
                 ..*light
             };
             lights.iter().zip(0..).map(drawn).collect()

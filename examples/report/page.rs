@@ -6,6 +6,7 @@ use std::process::Command;
 use std::time::SystemTime;
 
 use crate::arguments::Arguments;
+use crate::command::say;
 use crate::study::Study;
 use crate::subject::Effort;
 
@@ -44,7 +45,7 @@ impl Page {
     }
 
     pub fn print_head(&self) {
-        println!("{}", self.head);
+        say(format_args!("{}", self.head));
     }
 
     /// Prints the study's table, and adds its figure too.
@@ -57,7 +58,7 @@ impl Page {
             figure,
         } = study;
         let table = summary.as_ref().unwrap_or(sheet).markdown();
-        println!("\n{}: {name}\n\n{table}", figure.title);
+        say(format_args!("\n{}: {name}\n\n{table}", figure.title));
         let title = &figure.title;
         let _ = write!(
             self.studies,
@@ -75,7 +76,10 @@ impl Page {
         std::fs::write(&unfinished, text)
             .and_then(|()| std::fs::rename(&unfinished, &path))
             .map_err(|error| format!("cannot write {}: {error}", path.display()))?;
-        println!("\nfigures, tables and all: {}", path.display());
+        say(format_args!(
+            "\nfigures, tables and all: {}",
+            path.display()
+        ));
         Ok(())
     }
 }

@@ -41,22 +41,23 @@ impl LitPoints {
         };
         for (i, photon) in photons.iter().enumerate() {
             let material = &materials[photon.material];
+            let normal = photon.incidence.normal;
             points.footprint = (points.footprint).lerp(photon.footprint, 1.0 / (i + 1) as f32);
             if material.glossy {
                 points.glossy.push(LitPoint {
                     position: photon.position,
-                    normal: photon.normal,
+                    normal,
                     flux: photon.flux * material.tint,
-                    lobe: GgxLobe::new(ggx, fresnel, photon.normal, photon.incoming),
+                    lobe: GgxLobe::new(ggx, fresnel, photon.incidence),
                 });
             }
             let albedo = material.albedo.max_element();
             if albedo > 0.0 {
                 points.diffuse.push(LitPoint {
                     position: photon.position,
-                    normal: photon.normal,
+                    normal,
                     flux: photon.flux * (material.albedo / albedo),
-                    lobe: LambertLobe::new(albedo, photon.normal)?,
+                    lobe: LambertLobe::new(albedo, normal)?,
                 });
             }
         }

@@ -1,7 +1,7 @@
 //! Direct light: what a reflective shadow map holds, one photon for each of its texels.
 
 use rayon::prelude::*;
-use stochastic_light_culling::{Direction, glam::Vec3};
+use stochastic_light_culling::{Direction, Incidence, glam::Vec3};
 
 use super::random::{Purpose, uniform};
 use super::{Spot, Tracer};
@@ -10,8 +10,7 @@ use super::{Spot, Tracer};
 #[derive(Clone, Copy, Debug)]
 pub struct Photon {
     pub position: Vec3,
-    pub normal: Direction,
-    pub incoming: Direction,
+    pub incidence: Incidence,
     /// In W, for red, green and blue.
     pub flux: Vec3,
     /// The area of surface that the photon stands for.
@@ -44,8 +43,10 @@ fn trace_photon(tracer: &Tracer, spot: &Spot, [x, y]: [f32; 2], area: f32) -> Op
     let distance_squared = hit.position.distance_squared(spot.position);
     Some(Photon {
         position: hit.position,
-        normal: Direction::new(hit.normal).ok()?,
-        incoming: Direction::new(-ray).ok()?,
+        incidence: Incidence {
+            normal: Direction::new(hit.normal).ok()?,
+            incoming: Direction::new(-ray).ok()?,
+        },
         flux: spot.intensity * solid_angle,
         footprint: distance_squared * solid_angle / cosine.max(0.1),
         material: hit.material,

@@ -1,7 +1,7 @@
 //! One combination of roughness, incidence, place and scale, and the lights drawn in it.
 
 use fastrand::Rng;
-use stochastic_light_culling::{Stretch, glam::Vec3};
+use stochastic_light_culling::glam::Vec3;
 
 use crate::adversary::{Bound, Light, Tile, fresnel};
 use crate::reference::{Brdf, Masking};
@@ -91,7 +91,7 @@ impl Cell {
         else {
             return;
         };
-        let Some(stretch) = Stretch::new(&spheroid.into(), &tile.camera) else {
+        let Some(stretch) = spheroid.project(&tile.camera) else {
             return;
         };
         let (r, alpha) = (r.hi(), f64::from(self.alpha));

@@ -1,7 +1,7 @@
 //! The formulas' values by the crate, by the direct port, and in double-double.
 
 use stochastic_light_culling::{
-    Conductor, Dielectric, Ggx, GgxLobe, NoFresnel, Schlick, glam::Vec3,
+    Conductor, Dielectric, Ggx, GgxLobe, Incidence, NoFresnel, Schlick, glam::Vec3,
 };
 use twofloat::TwoFloat as Real;
 use twofloat::consts::PI;
@@ -86,7 +86,7 @@ fn relative_errors(computed: Quantities<f32>, exact: Quantities<Real>) -> Quanti
     })
 }
 
-/// D of the half vector and the normal as they are in `f32`; 0 at and below the horizon.
+/// D of the half vector and the normal, both as rounded to `f32`; 0 at and below the horizon.
 fn exact_ndf(roughness: f32, half_vector: Vec3, normal: Vec3) -> Real {
     if half_vector.dot(normal) <= 0.0 {
         return Real::from(0.0);
@@ -151,7 +151,10 @@ fn fresnel_factors(light: &Light, ggx: Ggx, fresnel: Fresnel, cosine: f32) -> [f
         fresnel: F,
         cosine: f32,
     ) -> [f32; 2] {
-        let lobe = GgxLobe::new(ggx, fresnel, light.normal, light.incoming);
+        let Light {
+            normal, incoming, ..
+        } = *light;
+        let lobe = GgxLobe::new(ggx, fresnel, Incidence { normal, incoming });
         [fresnel.reflectance(cosine), lobe.max_fresnel()]
     }
     const DOMAIN: &str = "in the domain";

@@ -1,14 +1,44 @@
 use glam::Vec3;
 
-use super::{Bounded, Sphere};
-use crate::{ConstantLobe, math};
+use super::shape::{MAX_QUADS, Quads};
+use super::sphere::Spheres;
+use super::{BoundStrategy, Bounded, Paper, Sphere};
+use crate::lobe::ConstantLobe;
+use crate::num::{Single, Vector3, round_up, sqrt};
+
+/// The isosurface itself, the sphere of radius √(1/4π) around the light [Tokuyoshi & Harada 2016].
+impl BoundStrategy<ConstantLobe> for Paper {
+    type Shape = Sphere;
+
+    fn unit_bound(&self, _: &ConstantLobe) -> Sphere {
+        Sphere::from_parts(Vec3::ZERO, round_up(sqrt(ConstantLobe::VALUE), 2))
+    }
+
+    type PerLight = ();
+
+    const QUADS: usize = 0;
+
+    #[inline(always)]
+    fn to_quads(&self, _: &ConstantLobe) -> (Quads<f32>, ()) {
+        ([[0.0; 4]; MAX_QUADS], ())
+    }
+
+    #[inline(always)]
+    fn unit_bounds<N: Single>(&self, quads: &Quads<N>, _: &[()]) -> Spheres<N> {
+        let like = quads[0][0];
+        let sphere = self.unit_bound(&ConstantLobe).lanes();
+        Spheres {
+            center: Vector3::splat(like, sphere.center),
+            radius: like.splat(sphere.radius),
+        }
+    }
+}
 
 impl Bounded for ConstantLobe {
-    type Bound = Sphere;
+    type Shape = Sphere;
+    type Strategy = Paper;
 
-    /// The isosurface itself, the sphere of radius √(1/4π) around the light
-    /// [Tokuyoshi & Harada 2016].
     fn unit_bound(&self) -> Sphere {
-        Sphere::from_parts(Vec3::ZERO, math::round_up(math::sqrt(Self::VALUE), 2))
+        self.unit_bound_by(Paper)
     }
 }

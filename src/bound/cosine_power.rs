@@ -41,39 +41,56 @@
 //! (1+p)z^p − pz^{p−1} + 2z − 3z²; z₁ = p/(1 + 2p + 0.6p(1−p)) leaves it within 4·10⁻⁵. For m = 0, half a
 //! ball, z₁ = 0, a = ¾ and b² = 9/8.
 
-use glam::{Mat3, Vec3};
+use super::Ellipsoids;
+use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3, power};
 
-use super::Ellipsoid;
-use crate::{Direction, math};
-
-/// An ellipsoid of revolution, for a lobe that reaches as far as 1 along its axis.
+/// An ellipsoid of revolution in each lane, for lobes that reach as far as 1 along their axis.
 #[derive(Clone, Copy)]
-pub(super) struct Revolved {
+pub(super) struct Revolved<N> {
     /// From the light, along the axis.
-    center: f32,
-    along: f32,
-    across: f32,
+    center: N,
+    along: N,
+    across: N,
 }
 
-impl Revolved {
+impl<N: Single> Revolved<N> {
     /// The smallest ellipsoid around √cosθ: z₁ = w³ for the root w = 0.6496 of
-    /// 9w⁶ + 9w⁵ + 9w⁴ + 3w³ − 2w² − 2w − 2.
-    pub(super) const AROUND_LAMBERT: Self = Self {
-        center: 0.455_624_55,
-        along: 0.544_375_5,
-        across: 0.624_675_8,
-    };
-
-    /// The ellipsoid around cos^{n/2}γ for `exponent` = n ≥ 0.
-    pub(super) fn around_cosine_power(exponent: f32) -> Self {
-        if exponent < 2.0 {
-            Self::at_tip(2.0 * exponent / (exponent + 2.0))
-        } else {
-            Self::at_light(exponent)
+    /// 9w⁶ + 9w⁵ + 9w⁴ + 3w³ − 2w² − 2w − 2. In as many lanes as `like` has.
+    #[inline(always)]
+    pub fn around_lambert(like: N) -> Self {
+        Self {
+            center: like.splat(0.455_624_55),
+            along: like.splat(0.544_375_5),
+            across: like.splat(0.624_675_8),
         }
     }
 
-    fn at_light(exponent: f32) -> Self {
+    /// The ellipsoid around cos^{n/2}γ for `exponent` = n ≥ 0.
+    #[inline(always)]
+    pub fn around_cosine_power(exponent: N) -> Self {
+        let is_broad = exponent.splat(2.0).gt(exponent);
+        if N::is_known_false(is_broad) {
+            return Self::at_light(exponent);
+        }
+        let at_tip = Self::at_tip(exponent * 2.0 / (exponent + 2.0));
+        if N::is_known_false(!is_broad) {
+            return at_tip;
+        }
+        let at_light = Self::at_light(exponent);
+        let [center, along, across] = N::select_all(
+            is_broad,
+            [at_tip.center, at_tip.along, at_tip.across],
+            [at_light.center, at_light.along, at_light.across],
+        );
+        Self {
+            center,
+            along,
+            across,
+        }
+    }
+
+    #[inline(always)]
+    fn at_light(exponent: N) -> Self {
         /// Agrees with (1 − d/3)^{1/d} in seven of Chebyshev's points; from the highest power on.
         const RING: [f32; 7] = [
             -8.912_604e-5,
@@ -84,50 +101,57 @@ impl Revolved {
             -3.980_699_4e-2,
             7.165_313e-1,
         ];
-        let d = 4.0 / (exponent + 2.0);
-        let ring = RING
-            .into_iter()
-            .fold(0.0, |sum, coefficient| sum * d + coefficient);
-        let along = 0.75 * math::round_up(ring, 24);
+        let d = exponent.splat(4.0) / (exponent + 2.0);
+        let mut ring = d.zero();
+        for coefficient in RING {
+            ring = ring * d + coefficient;
+        }
+        let along = ring.round_up(24) * 0.75;
         Self {
             center: along,
             along,
-            across: along * math::sqrt(8.0 / (3.0 * exponent + 2.0)),
+            across: along * (d.splat(8.0) / (exponent * 3.0 + 2.0)).sqrt(),
         }
     }
 
     /// For p in [0, 1).
-    fn at_tip(p: f32) -> Self {
-        let over_ring = 1.0 + p * (2.0 + 0.6 * (1.0 - p));
+    #[inline(always)]
+    fn at_tip(p: N) -> Self {
+        let one = p.splat(1.0);
+        let over_ring = p * (p.one_minus() * 0.6 + 2.0) + 1.0;
         let ring = p / over_ring;
-        let power = math::power(ring.max(f32::MIN_POSITIVE), p);
-        let share = 1.0 - ring * ring / power;
+        let power = N::per_lane(
+            [ring.max(p.splat(f32::MIN_POSITIVE)), p],
+            #[inline(always)]
+            |_, [ring, p]| {
+                // Lanes with another exponent need none.
+                if p < 1.0 { power(ring, p) } else { 1.0 }
+            },
+        );
+        let share = (ring * ring / power).one_minus();
         // h′/h, with p/z₁ as a number that p = 0 has too.
-        let slope = (over_ring - 2.0 * ring / power) / share;
-        let rest = 1.0 - ring;
-        let s = 1.0 / (slope + 1.0 / rest);
-        let along = 0.5 * (rest + s);
+        let slope = (over_ring - ring * 2.0 / power) / share;
+        let rest = ring.one_minus();
+        let s = one / (slope + one / rest);
+        let along = (rest + s) * 0.5;
         Self {
-            center: 1.0 - along,
+            center: along.one_minus(),
             along,
-            across: along * math::sqrt(power * share / (rest * s)),
+            across: along * (power * share / (rest * s)).sqrt(),
         }
     }
 
-    /// The ellipsoid along `axis` for a lobe that reaches as far as `reach` ≥ 0, rounded outward.
-    pub(super) fn placed_along(self, axis: Direction, reach: f32) -> Ellipsoid {
-        if reach <= 0.0 {
-            return Ellipsoid::EMPTY;
-        }
+    /// The ellipsoid along `axis` for a lobe that reaches as far as `reach` > 0, rounded outward.
+    #[inline(always)]
+    pub fn along(self, axis: Vector3<N>, reach: N) -> Ellipsoids<N> {
         let (v, w) = axis.any_orthonormal_pair();
-        let semi_axes = Vec3::new(self.along, self.across, self.across);
+        let semi_axes = Vector3::new(self.along, self.across, self.across);
         // What the rounding of the axis, its frame and the centre moves, over the shortest semi-axis.
-        let moved = 16.0 * math::UNIT_ROUNDOFF * semi_axes.max_element() / semi_axes.min_element();
-        Ellipsoid::from_parts(
-            Vec3::ZERO,
-            *axis * (self.center * reach),
-            Mat3::from_cols(*axis, v, w),
-            semi_axes * math::round_up(reach * (1.0 + moved), 64),
-        )
+        let moved = semi_axes.max_element() * (16.0 * UNIT_ROUNDOFF) / semi_axes.min_element();
+        Ellipsoids {
+            parts: [Vector3::zero(reach), axis * (self.center * reach)],
+            axes: Matrix3::new(axis, v, w),
+            semi_axes: semi_axes * (reach * (moved + 1.0)).round_up(64),
+        }
     }
 }

@@ -1,7 +1,8 @@
 use glam::{Mat3, Vec3};
 
-use super::{Bound, rounding_of_sum, scaled};
-use crate::{Error, error, math};
+use super::shape::{Quads, Shape, ShapeLanes, rounding_of_sum, scaled};
+use crate::base::{Error, finite, orthonormal};
+use crate::num::{Matrix3, Single, Vector3};
 
 /// An ellipsoid, its surface included: {c + R diag(semi-axes) y : ‖y‖ ≤ 1}.
 ///
@@ -12,7 +13,7 @@ use crate::{Error, error, math};
 /// for a light with a tiny range far from the world's origin.
 ///
 /// ```
-/// use stochastic_light_culling::{Bound, Ellipsoid, glam::{Mat3, Vec3}};
+/// use stochastic_light_culling::{Ellipsoid, Shape, glam::{Mat3, Vec3}};
 ///
 /// let around = Vec3::new(0.0, 1.0, 0.0);
 /// let unit = Ellipsoid::new(around, Mat3::IDENTITY, Vec3::new(1.0, 2.0, 3.0))?;
@@ -46,7 +47,7 @@ impl Ellipsoid {
     /// within a ratio of 2³⁰ of each other; [`Error::Matrix`] if the columns of `rotation` are not
     /// orthonormal to 10⁻⁶.
     pub fn new(center: Vec3, rotation: Mat3, semi_axes: Vec3) -> Result<Self, Error> {
-        let center = error::finite("ellipsoid centre", center)?;
+        let center = finite("ellipsoid centre", center)?;
         let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
         if !(semi_axes.is_finite() && shortest > 0.0 && longest / shortest <= 1_073_741_824.0) {
             return Err(Error::Vector {
@@ -55,7 +56,7 @@ impl Ellipsoid {
                 valid: "finite, positive and within a ratio of 2³⁰ of each other",
             });
         }
-        error::orthonormal("ellipsoid rotation", rotation, 1e-6)?;
+        orthonormal("ellipsoid rotation", rotation, 1e-6)?;
         Ok(Self::from_parts(center, Vec3::ZERO, rotation, semi_axes))
     }
 
@@ -65,6 +66,16 @@ impl Ellipsoid {
             offset,
             rotation,
             semi_axes,
+        }
+    }
+
+    /// The formulas of one ellipsoid.
+    #[inline(always)]
+    pub(crate) fn lanes(&self) -> Ellipsoids<f32> {
+        Ellipsoids {
+            parts: [self.light.into(), self.offset.into()],
+            axes: self.rotation.into(),
+            semi_axes: self.semi_axes.into(),
         }
     }
 
@@ -90,22 +101,114 @@ impl Ellipsoid {
     }
 }
 
-impl Bound for Ellipsoid {
+/// An [`Ellipsoid`] in each lane.
+#[derive(Clone, Copy)]
+pub struct Ellipsoids<N> {
+    /// Two vectors whose exact sum is the centre.
+    pub parts: [Vector3<N>; 2],
+    /// R, whose columns are the directions of the axes.
+    pub axes: Matrix3<N>,
+    pub semi_axes: Vector3<N>,
+}
+
+impl<N: Single> Ellipsoids<N> {
+    #[inline(always)]
+    pub fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            parts: [
+                Vector3::select(mask, yes.parts[0], no.parts[0]),
+                Vector3::select(mask, yes.parts[1], no.parts[1]),
+            ],
+            axes: Matrix3::select(mask, yes.axes, no.axes),
+            semi_axes: Vector3::select(mask, yes.semi_axes, no.semi_axes),
+        }
+    }
+
+    #[inline(always)]
+    fn scaled_semi_axes(&self, scale: N) -> Vector3<N> {
+        let Vector3 { x, y, z } = self.semi_axes;
+        Vector3::new(scaled(x, scale), scaled(y, scale), scaled(z, scale))
+    }
+}
+
+impl<N: Single> ShapeLanes<N> for Ellipsoids<N> {
+    #[inline(always)]
+    fn placed(self, position: Vector3<N>, scale: N) -> Self {
+        let semi_axes = self.scaled_semi_axes(scale);
+        let [light, offset] = [self.parts[0] * scale, self.parts[1] * scale];
+        let sum = light + offset;
+        let rounding = rounding_of_sum(light) + rounding_of_sum(offset) + rounding_of_sum(sum);
+        let growth = (rounding / semi_axes.min_element() + 1.0).round_up(4);
+        Self {
+            parts: [position, sum],
+            axes: self.axes,
+            semi_axes: semi_axes * growth,
+        }
+    }
+
+    #[inline(always)]
+    fn is_empty(&self) -> N::Mask {
+        !self.semi_axes.min_element().is_positive()
+    }
+}
+
+impl Shape for Ellipsoid {
     fn placed(self, position: Vec3, scale: f32) -> Self {
-        let semi_axes = self.semi_axes.map(|semi_axis| scaled(semi_axis, scale));
+        let lanes = self.lanes();
+        let semi_axes = lanes.scaled_semi_axes(scale);
         let shortest = semi_axes.min_element();
         if shortest == 0.0 || semi_axes.max_element().is_infinite() {
             let semi_axes = Vec3::splat(if shortest == 0.0 { 0.0 } else { f32::INFINITY });
             return Self::from_parts(position, Vec3::ZERO, self.rotation, semi_axes);
         }
-        let [light, offset] = self.center_parts().map(|part| part * scale);
-        let sum = light + offset;
-        let rounding = rounding_of_sum(light) + rounding_of_sum(offset) + rounding_of_sum(sum);
-        let growth = math::round_up(1.0 + rounding / shortest, 4);
-        Self::from_parts(position, sum, self.rotation, semi_axes * growth)
+        Self::from_lanes(lanes.placed(position.into(), scale))
     }
 
     fn is_empty(&self) -> bool {
         self.semi_axes == Vec3::ZERO
+    }
+
+    type Lanes<N: Single> = Ellipsoids<N>;
+
+    const QUADS: usize = 5;
+
+    // In the order in which an ellipsoid holds its numbers, which are copied fastest so.
+    #[inline(always)]
+    fn to_quads(&self) -> Quads<f32> {
+        let ([q, o], r, s) = (self.center_parts(), self.rotation, self.semi_axes);
+        let [u, v, w] = [r.x_axis, r.y_axis, r.z_axis];
+        [
+            [q.x, q.y, q.z, o.x],
+            [o.y, o.z, u.x, u.y],
+            [u.z, v.x, v.y, v.z],
+            [w.x, w.y, w.z, s.x],
+            [s.y, s.z, 0.0, 0.0],
+        ]
+    }
+
+    #[inline(always)]
+    fn from_quads<N: Single>(quads: &Quads<N>) -> Ellipsoids<N> {
+        let [[q_x, q_y, q_z, o_x], [o_y, o_z, u_x, u_y], quads @ ..] = *quads;
+        let [[u_z, v_x, v_y, v_z], [w_x, w_y, w_z, s_x], [s_y, s_z, ..]] = quads;
+        Ellipsoids {
+            parts: [Vector3::new(q_x, q_y, q_z), Vector3::new(o_x, o_y, o_z)],
+            axes: Matrix3::new(
+                Vector3::new(u_x, u_y, u_z),
+                Vector3::new(v_x, v_y, v_z),
+                Vector3::new(w_x, w_y, w_z),
+            ),
+            semi_axes: Vector3::new(s_x, s_y, s_z),
+        }
+    }
+
+    #[inline(always)]
+    fn from_lanes(lanes: Ellipsoids<f32>) -> Self {
+        let [light, offset] = lanes.parts;
+        Self::from_parts(
+            light.into(),
+            offset.into(),
+            lanes.axes.into(),
+            lanes.semi_axes.into(),
+        )
     }
 }

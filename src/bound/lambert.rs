@@ -1,66 +1,105 @@
 use super::cosine_power::Revolved;
-use super::{Bound, Bounded, Ellipsoid, Sphere};
-use crate::{LambertLobe, Roulette, Vpl, Xi, math};
+use super::ellipsoid::Ellipsoids;
+use super::shape::{MAX_QUADS, Quads};
+use super::sphere::Spheres;
+use super::strategy::single_unit_bound;
+use super::{BoundStrategy, Bounded, Ellipsoid, Paper, Sphere, Tight};
+use crate::lobe::LambertLobe;
+use crate::num::{Single, Vector3};
 
-impl LambertLobe {
-    /// (1/3)^¾, the way from the light to the centre over R.
-    pub(crate) const CENTER: f32 = 0.438_691_34;
-    /// (4/27)^¼, the radius over R.
-    pub(crate) const RADIUS: f32 = 0.620_403_2;
-    /// Apart from √ρ, since the product with a subnormal albedo would be off by more than its root is.
-    pub(crate) const ROOT_OF_ONE_OVER_PI: f32 = 0.564_189_6;
+/// (1/3)^¾, the distance from the light to the centre over R.
+const CENTER: f32 = 0.438_691_34;
+/// (4/27)^¼, the radius over R.
+const RADIUS: f32 = 0.620_403_2;
+/// √(1/π)
+const ROOT_OF_ONE_OVER_PI: f32 = 0.564_189_6;
+
+/// √ρ and n
+#[inline(always)]
+fn to_quads(lobe: &LambertLobe) -> Quads<f32> {
+    let n = lobe.normal();
+    let mut quads = [[0.0; 4]; MAX_QUADS];
+    quads[0] = [lobe.albedo_root(), n.x, n.y, n.z];
+    quads
+}
+
+/// R = √(ρ/π), and n. The roots are apart, since the product with a subnormal albedo would be off by more
+/// than its root is.
+#[inline(always)]
+fn reach_and_normal<N: Single>(quads: &Quads<N>) -> (N, Vector3<N>) {
+    let [albedo_root, x, y, z] = quads[0];
+    (albedo_root * ROOT_OF_ONE_OVER_PI, Vector3::new(x, y, z))
+}
+
+/// The sphere around the surface l = R√cosθ, R² = ρ/π, centred (1/3)^¾ R above the light, with
+/// radius (4/27)^¼ R [Tokuyoshi & Harada 2017, Sec. 6].
+///
+/// A point of the surface is l² − 2(1/3)^¾ R² cos^{3/2}θ + (1/3)^{3/2} R² from that centre, squared,
+/// which is largest at cosθ = 1/√3 and there (4/27)^½ R²: the sphere is the smallest one.
+impl BoundStrategy<LambertLobe> for Paper {
+    type Shape = Sphere;
+
+    #[inline]
+    fn unit_bound(&self, lobe: &LambertLobe) -> Sphere {
+        single_unit_bound(*self, lobe)
+    }
+
+    type PerLight = ();
+
+    const QUADS: usize = 1;
+
+    #[inline(always)]
+    fn to_quads(&self, lobe: &LambertLobe) -> (Quads<f32>, ()) {
+        (to_quads(lobe), ())
+    }
+
+    #[inline(always)]
+    fn unit_bounds<N: Single>(&self, quads: &Quads<N>, _: &[()]) -> Spheres<N> {
+        let (reach, normal) = reach_and_normal(quads);
+        Spheres {
+            center: normal * (reach * CENTER),
+            radius: (reach * RADIUS).round_up(16),
+        }
+    }
+}
+
+/// The smallest ellipsoid around the surface l = R√cosθ, R² = ρ/π: flatter than the sphere, with 0.8896 of
+/// its volume.
+///
+/// Its semi-axes are 0.54438R along the normal and 0.62468R across it, and it touches the surface at
+/// its tip and in the ring at cosθ = 0.422. A tile test takes longer for it than for the sphere.
+impl BoundStrategy<LambertLobe> for Tight {
+    type Shape = Ellipsoid;
+
+    fn unit_bound(&self, lobe: &LambertLobe) -> Ellipsoid {
+        if lobe.albedo_root() <= 0.0 {
+            return Ellipsoid::EMPTY;
+        }
+        single_unit_bound(*self, lobe)
+    }
+
+    type PerLight = ();
+
+    const QUADS: usize = 1;
+
+    #[inline(always)]
+    fn to_quads(&self, lobe: &LambertLobe) -> (Quads<f32>, ()) {
+        (to_quads(lobe), ())
+    }
+
+    #[inline(always)]
+    fn unit_bounds<N: Single>(&self, quads: &Quads<N>, _: &[()]) -> Ellipsoids<N> {
+        let (reach, normal) = reach_and_normal(quads);
+        Revolved::around_lambert(reach).along(normal, reach)
+    }
 }
 
 impl Bounded for LambertLobe {
-    type Bound = Sphere;
+    type Shape = Sphere;
+    type Strategy = Paper;
 
-    /// The sphere around the surface l = R√cosθ, R² = ρ/π, centred (1/3)^¾ R above the light, with
-    /// radius (4/27)^¼ R [Tokuyoshi & Harada 2017, Sec. 6].
-    ///
-    /// A point of the surface is l² − 2(1/3)^¾ R² cos^{3/2}θ + (1/3)^{3/2} R² from that centre, squared,
-    /// which is largest at cosθ = 1/√3 and there (4/27)^½ R²: the sphere is the smallest one.
     #[inline]
     fn unit_bound(&self) -> Sphere {
-        let reach = unit_reach(self);
-        Sphere::from_parts(
-            *self.normal() * (Self::CENTER * reach),
-            math::round_up(Self::RADIUS * reach, 16),
-        )
+        self.unit_bound_by(Paper)
     }
-}
-
-impl LambertLobe {
-    /// The smallest ellipsoid around the surface l = R√cosθ, R² = ρ/π, for a light at the origin: flatter
-    /// than the [sphere](Bounded::unit_bound), with 0.8896 of its volume.
-    ///
-    /// Its semi-axes are 0.54438R along the normal and 0.62468R across it, and it touches the surface at
-    /// its tip and in the ring at cosθ = 0.422. A tile test takes longer for it than for the sphere.
-    ///
-    /// ```
-    /// use stochastic_light_culling::{Bounded, Direction, LambertLobe};
-    ///
-    /// let chalk = LambertLobe::new(0.9, Direction::Y)?;
-    /// let (ellipsoid, sphere) = (chalk.tight_bound(), chalk.unit_bound());
-    /// let volume = ellipsoid.semi_axes().element_product() / sphere.radius().powi(3);
-    /// assert!(0.88 < volume && volume < 0.89);
-    /// # Ok::<(), stochastic_light_culling::Error>(())
-    /// ```
-    pub fn tight_bound(&self) -> Ellipsoid {
-        Revolved::AROUND_LAMBERT.placed_along(self.normal(), unit_reach(self))
-    }
-}
-
-impl Vpl<LambertLobe> {
-    /// The [tight ellipsoid](LambertLobe::tight_bound) around everything that accepts this light in a frame
-    /// with `roulette` and `xi`.
-    pub fn tight_bound(&self, roulette: &Roulette, xi: Xi) -> Ellipsoid {
-        let scale = roulette.scale(self.flux(), xi);
-        self.lobe().tight_bound().placed(self.position(), scale)
-    }
-}
-
-/// R = √(ρ/π), with the roots apart, since the product with a subnormal albedo would be off by more than
-/// its root is.
-fn unit_reach(lobe: &LambertLobe) -> f32 {
-    lobe.albedo_root() * LambertLobe::ROOT_OF_ONE_OVER_PI
 }

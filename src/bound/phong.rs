@@ -1,18 +1,53 @@
 use super::cosine_power::Revolved;
-use super::{Bounded, Ellipsoid};
-use crate::PhongLobe;
+use super::ellipsoid::Ellipsoids;
+use super::shape::{MAX_QUADS, Quads};
+use super::strategy::single_unit_bound;
+use super::{BoundStrategy, Bounded, Ellipsoid, Tight};
+use crate::lobe::PhongLobe;
+use crate::num::{Single, Vector3};
+
+/// The smallest ellipsoid around the surface l = R cos^{n/2}γ, R² = ρ(n+1)/(2π), where γ is the angle
+/// to the mirror direction: what [Dachsbacher & Stamminger 2006] splat, made tight.
+///
+/// For n ≥ 2 its semi-axis along the mirror direction is
+/// a = ¾((3n+2)/(3n+6))^{(n+2)/4} R, across it a√(8/(3n+2)), and it touches the light; for n = 2 it is
+/// a sphere. Broader lobes hang from the tip of theirs, which is within 10⁻⁴ of the least volume. The
+/// part of the lobe that the horizon cuts off is enclosed too.
+impl BoundStrategy<PhongLobe> for Tight {
+    type Shape = Ellipsoid;
+
+    fn unit_bound(&self, lobe: &PhongLobe) -> Ellipsoid {
+        if lobe.unit_reach() <= 0.0 {
+            return Ellipsoid::EMPTY;
+        }
+        single_unit_bound(*self, lobe)
+    }
+
+    type PerLight = ();
+
+    const QUADS: usize = 2;
+
+    #[inline(always)]
+    fn to_quads(&self, lobe: &PhongLobe) -> (Quads<f32>, ()) {
+        let axis = lobe.axis();
+        let mut quads = [[0.0; 4]; MAX_QUADS];
+        quads[0] = [axis.x, axis.y, axis.z, lobe.exponent()];
+        quads[1][0] = lobe.unit_reach();
+        (quads, ())
+    }
+
+    #[inline(always)]
+    fn unit_bounds<N: Single>(&self, quads: &Quads<N>, _: &[()]) -> Ellipsoids<N> {
+        let [[x, y, z, exponent], [reach, ..], ..] = *quads;
+        Revolved::around_cosine_power(exponent).along(Vector3::new(x, y, z), reach)
+    }
+}
 
 impl Bounded for PhongLobe {
-    type Bound = Ellipsoid;
+    type Shape = Ellipsoid;
+    type Strategy = Tight;
 
-    /// The smallest ellipsoid around the surface l = R cos^{n/2}γ, R² = ρ(n+1)/(2π), where γ is the angle
-    /// to the mirror direction: what [Dachsbacher & Stamminger 2006] splat, made tight.
-    ///
-    /// For n ≥ 2 its semi-axis along the mirror direction is
-    /// a = ¾((3n+2)/(3n+6))^{(n+2)/4} R, across it a√(8/(3n+2)), and it touches the light; for n = 2 it is
-    /// a sphere. Broader lobes hang from the tip of theirs, which is within 10⁻⁴ of the least volume. The
-    /// part of the lobe that the horizon cuts off is enclosed too.
     fn unit_bound(&self) -> Ellipsoid {
-        Revolved::around_cosine_power(self.exponent()).placed_along(self.axis(), self.unit_reach())
+        self.unit_bound_by(Tight)
     }
 }

@@ -1,7 +1,6 @@
 //! The axes of an ellipsoid that is given as the image of a ball.
 
-use crate::math;
-use crate::wide::Vector;
+use crate::num::{Double, Vector3};
 
 /// The axes, of unit length and at right angles, and semi-axes of the ellipsoid {Az : ‖z‖ ≤ 1} or of one
 /// around it, where `rows` are the rows of A, none of them zero.
@@ -11,46 +10,77 @@ use crate::wide::Vector;
 /// which an eigenvalue of A Aᵀ would not be. Where the fixed number of turns ends, the semi-axes are
 /// enlarged by what the rows still have in common: for unit rows Aᵀ with cosines cᵢⱼ between them no
 /// eigenvalue of A Aᵀ exceeds 1 + Σ|cᵢⱼ|.
-pub(super) fn principal_axes<const N: usize>(mut rows: [[f64; N]; 3]) -> ([Vector; 3], [f64; 3]) {
+#[inline(always)]
+pub(super) fn principal_axes<D: Double, const K: usize>(
+    mut rows: [[D; K]; 3],
+) -> ([Vector3<D>; 3], [D; 3]) {
     const SWEEPS: usize = 4;
     const PAIRS: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
-    let mut axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let (zero, one) = (rows[0][0].zero(), rows[0][0].splat(1.0));
+    let mut axes = [[one, zero, zero], [zero, one, zero], [zero, zero, one]];
     for (i, j) in [PAIRS; SWEEPS].into_iter().flatten() {
-        let in_common = dot(rows[i], rows[j]);
-        let squares = [i, j].map(|k| dot(rows[k], rows[k]));
-        // Too little in common to count.
-        if in_common * in_common <= 1e-20 * squares[0] * squares[1] {
+        let in_common = dot(&rows[i], &rows[j]);
+        let squares = [dot(&rows[i], &rows[i]), dot(&rows[j], &rows[j])];
+        let counts = !(in_common * in_common).le(squares[0] * 1e-20 * squares[1]);
+        if D::is_known_false(counts) {
             continue;
         }
-        let cotangent = (squares[1] - squares[0]) / (2.0 * in_common);
+        let cotangent = (squares[1] - squares[0]) / (in_common * 2.0);
         // Of the two angles the one below 45°.
-        let root = math::length([1.0, cotangent, 0.0]);
-        let tangent = 1.0_f64.copysign(cotangent) / (cotangent.abs() + root);
-        let cosine = 1.0 / math::length([1.0, tangent, 0.0]);
-        let turn = (cosine, cosine * tangent);
-        (rows[i], rows[j]) = turned(turn, rows[i], rows[j]);
-        (axes[i], axes[j]) = turned(turn, axes[i], axes[j]);
+        let root = (cotangent * cotangent + 1.0).sqrt();
+        let tangent = one.copysign(cotangent) / (cotangent.abs() + root);
+        let cosine = one / (tangent * tangent + 1.0).sqrt();
+        let sine = cosine * tangent;
+        let turned_rows = turned(cosine, sine, rows[i], rows[j]);
+        let turned_axes = turned(cosine, sine, axes[i], axes[j]);
+        rows[i] = D::select_all(counts, turned_rows.0, rows[i]);
+        rows[j] = D::select_all(counts, turned_rows.1, rows[j]);
+        axes[i] = D::select_all(counts, turned_axes.0, axes[i]);
+        axes[j] = D::select_all(counts, turned_axes.1, axes[j]);
     }
-    let lengths = rows.map(|row| math::sqrt_of_wide(dot(row, row)));
-    let in_common: f64 = PAIRS
-        .iter()
-        .map(|&(i, j)| dot(rows[i], rows[j]).abs() / (lengths[i] * lengths[j]))
-        .sum();
-    let growth = math::sqrt_of_wide(1.0 + in_common);
-    (axes, lengths.map(|length| length * growth))
-}
-
-fn turned<const N: usize>(
-    (cosine, sine): (f64, f64),
-    a: [f64; N],
-    b: [f64; N],
-) -> ([f64; N], [f64; N]) {
+    let mut lengths = [zero; 3];
+    for (length, row) in lengths.iter_mut().zip(&rows) {
+        *length = dot(row, row).sqrt();
+    }
+    let mut in_common = zero;
+    for (i, j) in PAIRS {
+        in_common = in_common + dot(&rows[i], &rows[j]).abs() / (lengths[i] * lengths[j]);
+    }
+    let growth = (in_common + 1.0).sqrt();
+    let [a, b, c] = axes;
     (
-        core::array::from_fn(|i| cosine * a[i] - sine * b[i]),
-        core::array::from_fn(|i| sine * a[i] + cosine * b[i]),
+        [vector(a), vector(b), vector(c)],
+        [
+            lengths[0] * growth,
+            lengths[1] * growth,
+            lengths[2] * growth,
+        ],
     )
 }
 
-fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
-    (0..N).map(|i| a[i] * b[i]).sum()
+#[inline(always)]
+fn turned<D: Double, const K: usize>(
+    cosine: D,
+    sine: D,
+    mut a: [D; K],
+    mut b: [D; K],
+) -> ([D; K], [D; K]) {
+    for (a, b) in a.iter_mut().zip(&mut b) {
+        (*a, *b) = (cosine * *a - sine * *b, sine * *a + cosine * *b);
+    }
+    (a, b)
+}
+
+#[inline(always)]
+fn dot<D: Double, const K: usize>(a: &[D; K], b: &[D; K]) -> D {
+    let mut sum = a[0] * b[0];
+    for (a, b) in a.iter().zip(b).skip(1) {
+        sum = sum + *a * *b;
+    }
+    sum
+}
+
+#[inline(always)]
+fn vector<D: Double>([x, y, z]: [D; 3]) -> Vector3<D> {
+    Vector3::new(x, y, z)
 }

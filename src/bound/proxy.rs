@@ -9,8 +9,9 @@
 use glam::Vec3;
 
 use super::Ellipsoid;
-use crate::math;
-use crate::wide::{self, Vector};
+use crate::num::{UNIT_ROUNDOFF, Vector3, sqrt_f64};
+
+type Vector = [f64; 3];
 
 /// A closed triangle mesh that contains an [`Ellipsoid`], each triangle touching it: the geometry by which
 /// lights are splatted [Dachsbacher & Stamminger 2006].
@@ -19,9 +20,9 @@ use crate::wide::{self, Vector};
 /// volumes [Fejes Tóth 1964, *Regular Figures*].
 ///
 /// ```
-/// use stochastic_light_culling::{Direction, Ellipsoid, LambertLobe, Proxy, glam::Vec3};
+/// use stochastic_light_culling::{Bounded, Direction, LambertLobe, Proxy, Tight, glam::Vec3};
 ///
-/// let light = LambertLobe::new(0.8, Direction::Y)?.tight_bound();
+/// let light = LambertLobe::new(0.8, Direction::Y)?.unit_bound_by(Tight);
 /// let positions: Vec<Vec3> = Proxy::Icosphere.vertices(&light).collect();
 /// let indices: &[u16] = Proxy::Icosphere.triangles().as_flattened();
 /// assert_eq!((positions.len(), indices.len()), (42, 3 * 80));
@@ -70,8 +71,8 @@ impl Proxy {
 /// The map from around the unit ball to around the ellipsoid.
 #[derive(Clone, Copy)]
 struct Frame {
-    center: Vector,
-    columns: [Vector; 3],
+    center: Vector3<f64>,
+    columns: [Vector3<f64>; 3],
 }
 
 impl Frame {
@@ -79,40 +80,45 @@ impl Frame {
     /// So the mesh is put around an ellipsoid that holds a ball of that radius d besides: that of the squared
     /// semi-axes (1+t)aᵢ² + (1+1/t)d², for any t > 0.
     fn around(ellipsoid: &Ellipsoid) -> Self {
-        let wide = |v: Vec3| v.to_array().map(f64::from);
+        let wide = |v: Vec3| Vector3::from(v).widen();
         let [light, offset] = ellipsoid.center_parts().map(wide);
         let most = f64::from(f32::MAX);
-        let center = wide::sum([(1.0, light), (1.0, offset)]).map(|x| x.clamp(-most, most));
+        let Vector3 { x, y, z } = light + offset;
+        let center = [x, y, z].map(|x| x.clamp(-most, most));
         let rotation = ellipsoid.rotation();
         let axes = [rotation.x_axis, rotation.y_axis, rotation.z_axis].map(wide);
-        let semi_axes = wide(ellipsoid.semi_axes().min(Vec3::MAX));
+        let semi_axes = ellipsoid.semi_axes().min(Vec3::MAX);
+        let semi_axes = semi_axes.to_array().map(f64::from);
 
         let [shortest, longest] =
             [f64::min, f64::max].map(|pick| semi_axes.into_iter().reduce(pick).unwrap_or_default());
         let [x, y, z] = center.map(f64::abs);
         let farthest = x.max(y).max(z) + 2.0 * longest;
         let subnormal = f64::from(f32::from_bits(2));
-        let moved = 2.0 * f64::from(math::UNIT_ROUNDOFF) * farthest + subnormal;
+        let moved = 2.0 * f64::from(UNIT_ROUNDOFF) * farthest + subnormal;
         let share = (moved / shortest).min(1.0);
         // A mirrored frame would turn the triangles inside out; an ellipsoid is its own mirror image.
-        let side = wide::dot(wide::cross(axes[0], axes[1]), axes[2]).signum();
+        let side = axes[0].cross(axes[1]).dot(axes[2]).signum();
         let columns = [(side, 0), (1.0, 1), (1.0, 2)].map(|(side, i)| {
             let a = semi_axes[i];
             let enlarged = (1.0 + share) * a * a + (1.0 + 1.0 / share) * moved * moved;
             let length = if shortest > 0.0 {
-                math::sqrt_of_wide(enlarged)
+                sqrt_f64(enlarged)
             } else {
                 0.0
             };
-            wide::sum([(side * length, axes[i])])
+            axes[i] * (side * length)
         });
-        Self { center, columns }
+        Self {
+            center: center.into(),
+            columns,
+        }
     }
 
     fn to_world(self, [x, y, z]: Vector) -> Vec3 {
         let [a, b, c] = self.columns;
-        let point = wide::sum([(1.0, self.center), (x, a), (y, b), (z, c)]);
-        Vec3::from_array(point.map(|x| (x as f32).clamp(f32::MIN, f32::MAX)))
+        let Vector3 { x, y, z } = self.center + a * x + b * y + c * z;
+        Vec3::from_array([x, y, z].map(|x| (x as f32).clamp(f32::MIN, f32::MAX)))
     }
 }
 

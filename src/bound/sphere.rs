@@ -1,7 +1,8 @@
 use glam::Vec3;
 
-use super::{Bound, rounding_of_sum, scaled};
-use crate::{Error, error, math};
+use super::shape::{MAX_QUADS, Quads, Shape, ShapeLanes, rounding_of_sum, scaled};
+use crate::base::{Error, finite, number_in};
+use crate::num::{Single, Vector3};
 
 /// A ball, its surface included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,13 +20,22 @@ impl Sphere {
     /// infinite or NaN.
     pub fn new(center: Vec3, radius: f32) -> Result<Self, Error> {
         Ok(Self {
-            center: error::finite("sphere centre", center)?,
-            radius: error::number_in("sphere radius", radius, "in [0, ∞)", 0.0..=f32::MAX)?,
+            center: finite("sphere centre", center)?,
+            radius: number_in("sphere radius", radius, "in [0, ∞)", 0.0..=f32::MAX)?,
         })
     }
 
     pub(super) fn from_parts(center: Vec3, radius: f32) -> Self {
         Self { center, radius }
+    }
+
+    /// The formulas of one sphere.
+    #[inline(always)]
+    pub(crate) fn lanes(&self) -> Spheres<f32> {
+        Spheres {
+            center: self.center.into(),
+            radius: self.radius,
+        }
     }
 
     /// The centre.
@@ -39,20 +49,67 @@ impl Sphere {
     }
 }
 
-impl Bound for Sphere {
-    #[inline]
-    fn placed(self, position: Vec3, scale: f32) -> Self {
+/// A [`Sphere`] in each lane.
+#[derive(Clone, Copy)]
+pub struct Spheres<N> {
+    pub center: Vector3<N>,
+    pub radius: N,
+}
+
+impl<N: Single> ShapeLanes<N> for Spheres<N> {
+    #[inline(always)]
+    fn placed(self, position: Vector3<N>, scale: N) -> Self {
         let radius = scaled(self.radius, scale);
-        if radius == 0.0 {
-            return Self::from_parts(position, 0.0);
-        }
         let offset = self.center * scale;
         let center = position + offset;
         let rounding = rounding_of_sum(offset) + rounding_of_sum(center);
-        Self::from_parts(center, math::round_up(radius + rounding, 2))
+        Self {
+            center,
+            radius: (radius + rounding).round_up(2),
+        }
+    }
+
+    #[inline(always)]
+    fn is_empty(&self) -> N::Mask {
+        !self.radius.is_positive()
+    }
+}
+
+impl Shape for Sphere {
+    #[inline]
+    fn placed(self, position: Vec3, scale: f32) -> Self {
+        if scaled(self.radius, scale) == 0.0 {
+            return Self::from_parts(position, 0.0);
+        }
+        Self::from_lanes(self.lanes().placed(position.into(), scale))
     }
 
     fn is_empty(&self) -> bool {
         self.radius == 0.0
+    }
+
+    type Lanes<N: Single> = Spheres<N>;
+
+    const QUADS: usize = 1;
+
+    #[inline(always)]
+    fn to_quads(&self) -> Quads<f32> {
+        let mut quads = [[0.0; 4]; MAX_QUADS];
+        quads[0] = [self.center.x, self.center.y, self.center.z, self.radius];
+        quads
+    }
+
+    #[inline(always)]
+    fn from_quads<N: Single>(quads: &Quads<N>) -> Spheres<N> {
+        let [x, y, z, radius] = quads[0];
+        Spheres {
+            center: Vector3::new(x, y, z),
+            radius,
+        }
+    }
+
+    #[inline(always)]
+    fn from_lanes(Spheres { center, radius }: Spheres<f32>) -> Self {
+        Self::from_parts(center.into(), radius)
     }
 }

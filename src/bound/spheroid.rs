@@ -1,7 +1,10 @@
 use glam::{Mat3, Vec3};
 
-use super::{Bound, Ellipsoid, Sphere, rounding_of_sum, scaled};
-use crate::{Direction, math};
+use super::ellipsoid::Ellipsoids;
+use super::shape::{MAX_QUADS, Quads, Shape, ShapeLanes, rounding_of_sum, scaled};
+use super::{Ellipsoid, Sphere};
+use crate::base::Direction;
+use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3, round_up};
 
 /// The paper's bounding spheroid, held by its focus, which is the light
 /// [Tokuyoshi & Harada 2017, Eqs. 12–15].
@@ -17,10 +20,10 @@ use crate::{Direction, math};
 /// and subtract it again would lose the near end; so the focus is what is stored.
 ///
 /// ```
-/// use stochastic_light_culling::{Bounded, Direction, Ggx, GgxLobe, NoFresnel, glam::Vec3};
+/// use stochastic_light_culling::{Bounded, Direction, Ggx, GgxLobe, Incidence, NoFresnel, Paper, glam::Vec3};
 ///
-/// let lobe = GgxLobe::new(Ggx::new(0.1)?, NoFresnel, Direction::Z, Direction::Z);
-/// let spheroid = lobe.unit_bound();
+/// let lobe = GgxLobe::new(Ggx::new(0.1)?, NoFresnel, Incidence::head_on(Direction::Z));
+/// let spheroid = lobe.unit_bound_by(Paper);
 /// assert_eq!((spheroid.focus(), spheroid.axis()), (Vec3::ZERO, lobe.mirror_direction()));
 /// assert!((spheroid.long_semi_axis() / spheroid.radius() - 5.05).abs() < 1e-5);
 /// assert!(spheroid.enclosing_sphere().radius() < spheroid.sphere_at_focus().radius());
@@ -35,23 +38,14 @@ pub struct Spheroid {
 }
 
 impl Spheroid {
-    /// The spheroid with a focus at the origin and the given r and α, enlarged to hold as well
-    /// those whose axis is tilted by up to `tilt_radians`.
-    ///
-    /// The greatest slope of ln s(θ) is e/√(1−e²) = k/(2α), so a tilt by φ is paid for by a factor
-    /// exp(φk/(2α)), which 1 + x + x² exceeds for x ≤ 1.
-    pub(super) fn around_tilted_axis(
-        axis: Direction,
-        radius: f32,
-        roughness: f32,
-        tilt_radians: f32,
-    ) -> Self {
-        let x = tilt_radians * (1.0 - roughness) * (1.0 + roughness) / (2.0 * roughness);
-        Self {
-            focus: Vec3::ZERO,
-            axis,
-            radius: math::round_up(radius * (1.0 + x * (1.0 + x)), 16),
-            roughness,
+    /// The formulas of one spheroid.
+    #[inline(always)]
+    pub(crate) fn lanes(&self) -> Spheroids<f32> {
+        Spheroids {
+            focus: self.focus.into(),
+            axis: self.axis.into(),
+            radius: self.radius,
+            roughness: self.roughness,
         }
     }
 
@@ -78,19 +72,12 @@ impl Spheroid {
 
     /// r_u = (1 + α²)/(2α) r, the long semi-axis.
     pub fn long_semi_axis(&self) -> f32 {
-        let alpha = self.roughness;
-        self.radius * ((1.0 + alpha * alpha) / (2.0 * alpha))
-    }
-
-    /// (k/2α) r, the distance from the focus to the centre.
-    fn center_distance(&self) -> f32 {
-        let alpha = self.roughness;
-        self.radius * ((1.0 - alpha) * (1.0 + alpha) / (2.0 * alpha))
+        self.lanes().long_semi_axis()
     }
 
     /// The sphere around the light of radius r/α, the bound of the 2016 method (Fig. 9a).
     pub fn sphere_at_focus(&self) -> Sphere {
-        Sphere::from_parts(self.focus, math::round_up(self.radius / self.roughness, 1))
+        Sphere::from_parts(self.focus, round_up(self.radius / self.roughness, 1))
     }
 
     /// The smallest sphere around the spheroid (Fig. 9b).
@@ -98,32 +85,116 @@ impl Spheroid {
         if self.is_empty() || self.long_semi_axis().is_infinite() {
             return Sphere::from_parts(self.focus, self.radius / self.roughness);
         }
-        let offset = *self.axis * self.center_distance();
-        let center = self.focus + offset;
+        let offset = self.lanes().center_offset();
+        let center = Vector3::from(self.focus) + offset;
         // The distance itself is off by four roundings of at most r_u.
-        let radius = math::round_up(self.long_semi_axis(), 8);
+        let radius = round_up(self.long_semi_axis(), 8);
         let rounding = rounding_of_sum(offset) + rounding_of_sum(center);
-        Sphere::from_parts(center, math::round_up(radius + rounding, 2))
+        Sphere::from_parts(center.into(), round_up(radius + rounding, 2))
     }
 }
 
-impl Bound for Spheroid {
-    fn placed(self, position: Vec3, scale: f32) -> Self {
+/// A [`Spheroid`] in each lane.
+#[derive(Clone, Copy)]
+pub struct Spheroids<N> {
+    pub focus: Vector3<N>,
+    pub axis: Vector3<N>,
+    pub radius: N,
+    pub roughness: N,
+}
+
+impl<N: Single> Spheroids<N> {
+    /// The spheroids with a focus at the origin and the given r and α, enlarged to hold as well
+    /// those whose axis is tilted by up to `tilt_radians`.
+    ///
+    /// The greatest slope of ln s(θ) is e/√(1−e²) = k/(2α), so a tilt by φ is paid for by a factor
+    /// exp(φk/(2α)), which 1 + x + x² exceeds for x ≤ 1.
+    #[inline(always)]
+    pub fn around_tilted_axis(
+        axis: Vector3<N>,
+        radius: N,
+        roughness: N,
+        tilt_radians: f32,
+    ) -> Self {
+        let x = roughness.one_minus() * tilt_radians * (roughness + 1.0) / (roughness * 2.0);
+        Self {
+            focus: Vector3::zero(radius),
+            axis,
+            radius: (radius * (x * (x + 1.0) + 1.0)).round_up(16),
+            roughness,
+        }
+    }
+
+    #[inline(always)]
+    fn long_semi_axis(&self) -> N {
+        let alpha = self.roughness;
+        self.radius * ((alpha * alpha + 1.0) / (alpha * 2.0))
+    }
+
+    /// The vector from the focus to the centre, (k/2α) r long.
+    #[inline(always)]
+    fn center_offset(&self) -> Vector3<N> {
+        let alpha = self.roughness;
+        self.axis * (self.radius * (alpha.one_minus() * (alpha + 1.0) / (alpha * 2.0)))
+    }
+
+    /// The ellipsoids with the centre and semi-axes (r_u, r, r), enlarged to pay for their rounding; not
+    /// finite where a spheroid is not.
+    #[inline(always)]
+    pub fn ellipsoids(self) -> Ellipsoids<N> {
+        let long = self.long_semi_axis();
+        let (v, w) = self.axis.any_orthonormal_pair();
+        let offset = self.center_offset();
+        // In units of the unit sphere: the offset's rounding over the shortest semi-axis, and the tilt
+        // of the axes over the ratio of longest to shortest.
+        let tilt = long * (8.0 * UNIT_ROUNDOFF);
+        let growth = (rounding_of_sum(offset) + tilt) / self.radius + 1.0;
+        let short = (self.radius * growth).round_up(8);
+        Ellipsoids {
+            parts: [self.focus, offset],
+            axes: Matrix3::new(self.axis, v, w),
+            semi_axes: Vector3::new((long * growth).round_up(8), short, short),
+        }
+    }
+}
+
+impl<N: Single> ShapeLanes<N> for Spheroids<N> {
+    #[inline(always)]
+    fn placed(self, position: Vector3<N>, scale: N) -> Self {
         let radius = scaled(self.radius, scale);
-        if self.focus == Vec3::ZERO || radius == 0.0 {
+        let is_at_origin = self.focus.is_zero();
+        if N::is_known_false(!is_at_origin) {
             return Self {
                 focus: position,
                 radius,
                 ..self
             };
         }
-        // Its nearest point is αr from the focus, which may be off by the rounding of these two.
+        // The nearest point is αr from the focus, which may be off by the rounding of these two.
         let offset = self.focus * scale;
         let focus = position + offset;
         let rounding = rounding_of_sum(offset) + rounding_of_sum(focus);
+        let grown = (radius + rounding / self.roughness).round_up(4);
+        let is_exact = is_at_origin | radius.eq(radius.zero());
         Self {
-            focus,
-            radius: math::round_up(radius + rounding / self.roughness, 4),
+            focus: Vector3::select(is_exact, position, focus),
+            radius: N::select(is_exact, radius, grown),
+            ..self
+        }
+    }
+
+    #[inline(always)]
+    fn is_empty(&self) -> N::Mask {
+        !self.radius.is_positive()
+    }
+}
+
+impl Shape for Spheroid {
+    fn placed(self, position: Vec3, scale: f32) -> Self {
+        let Spheroids { focus, radius, .. } = self.lanes().placed(position.into(), scale);
+        Self {
+            focus: focus.into(),
+            radius,
             ..self
         }
     }
@@ -131,33 +202,55 @@ impl Bound for Spheroid {
     fn is_empty(&self) -> bool {
         self.radius == 0.0
     }
+
+    type Lanes<N: Single> = Spheroids<N>;
+
+    const QUADS: usize = 2;
+
+    #[inline(always)]
+    fn to_quads(&self) -> Quads<f32> {
+        let (f, u) = (self.focus, self.axis);
+        let mut quads = [[0.0; 4]; MAX_QUADS];
+        quads[0] = [f.x, f.y, f.z, self.radius];
+        quads[1] = [u.x, u.y, u.z, self.roughness];
+        quads
+    }
+
+    #[inline(always)]
+    fn from_quads<N: Single>(quads: &Quads<N>) -> Spheroids<N> {
+        let [[f_x, f_y, f_z, radius], [u_x, u_y, u_z, roughness], ..] = *quads;
+        Spheroids {
+            focus: Vector3::new(f_x, f_y, f_z),
+            axis: Vector3::new(u_x, u_y, u_z),
+            radius,
+            roughness,
+        }
+    }
+
+    #[inline(always)]
+    fn from_lanes(lanes: Spheroids<f32>) -> Self {
+        Self {
+            focus: lanes.focus.into(),
+            axis: Direction::from_unit(lanes.axis.into()),
+            radius: lanes.radius,
+            roughness: lanes.roughness,
+        }
+    }
 }
 
 impl From<Spheroid> for Ellipsoid {
     /// The ellipsoid with the centre and semi-axes (r_u, r, r), enlarged to pay for their rounding.
+    #[inline]
     fn from(spheroid: Spheroid) -> Self {
-        let u = *spheroid.axis;
         let long = spheroid.long_semi_axis();
         if spheroid.is_empty() || long.is_infinite() {
-            return Ellipsoid::from_parts(
+            return Self::from_parts(
                 spheroid.focus,
                 Vec3::ZERO,
                 Mat3::IDENTITY,
                 Vec3::splat(long),
             );
         }
-        let (v, w) = u.any_orthonormal_pair();
-        let offset = u * spheroid.center_distance();
-        // In units of the unit sphere: the offset's rounding over the shortest semi-axis, and the tilt
-        // of the axes over the ratio of longest to shortest.
-        let tilt = 8.0 * math::UNIT_ROUNDOFF * long;
-        let growth = 1.0 + (rounding_of_sum(offset) + tilt) / spheroid.radius;
-        Ellipsoid::from_parts(
-            spheroid.focus,
-            offset,
-            Mat3::from_cols(u, v, w),
-            Vec3::new(long, spheroid.radius, spheroid.radius)
-                .map(|semi_axis| math::round_up(semi_axis * growth, 8)),
-        )
+        Self::from_lanes(spheroid.lanes().ellipsoids())
     }
 }

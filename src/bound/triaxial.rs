@@ -47,123 +47,155 @@
 //! after its cubic term is dropped. The first is taken if it comes out above d/3: within 3 % of the least
 //! volume.
 
-use glam::Vec3;
+use core::f32::consts::FRAC_1_PI;
 
-use super::{Bound, Ellipsoid};
-use crate::{Fresnel, GgxLobe, MaskingShadowing, Roulette, Vpl, Xi, math};
+use super::ellipsoid::Ellipsoids;
+use super::shape::{MAX_QUADS, Quads};
+use super::strategy::single_unit_bound;
+use super::{BoundStrategy, Ellipsoid, Triaxial};
+use crate::lobe::{Fresnel, GgxLobe, GgxLobes, MaskingShadowing};
+use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3};
 
-impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
-    /// The triaxial bound for Φ/(δξ) = 1 and a light at the origin: an ellipsoid around the paper's
-    /// ellipse in the plane of incidence that is as narrow across it as the lobe allows, for a lobe
-    /// scaled by the joint maximum of F and G2 ([`max_reflected`](GgxLobe::max_reflected)).
-    ///
-    /// In closed form and proved, where [`tight_bound`](GgxLobe::tight_bound) is smaller, and from a table.
-    /// Never larger than the paper's [`Spheroid`](crate::Spheroid) but for rounding; for metals about as
-    /// large at normal incidence and a fraction of it at grazing, for dielectrics a fraction throughout.
-    pub fn triaxial_bound(&self) -> Ellipsoid {
-        if self.incident_cosine() <= 0.0 {
+/// An ellipsoid around the paper's ellipse in the plane of incidence that is as narrow across it as the lobe
+/// allows, for a lobe scaled by the joint maximum of F and G2 ([`max_reflected`](GgxLobe::max_reflected)).
+///
+/// In closed form and proved, where [`Tight`](crate::Tight) is smaller, and from a table.
+/// Never larger than the paper's [`Spheroid`](crate::Spheroid) but for rounding; for metals about as
+/// large at normal incidence and a fraction of it at grazing, for dielectrics a fraction throughout.
+impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<GgxLobe<F, G>> for Triaxial {
+    type Shape = Ellipsoid;
+
+    fn unit_bound(&self, lobe: &GgxLobe<F, G>) -> Ellipsoid {
+        if lobe.incident_cosine() <= 0.0 {
             return Ellipsoid::EMPTY;
         }
-        let radius_squared =
-            self.max_reflected() * self.masking_over_four_cosines() * core::f32::consts::FRAC_1_PI;
-        ellipsoid_around(self, self.ggx().roughness(), math::sqrt(radius_squared))
+        single_unit_bound(*self, lobe)
+    }
+
+    type PerLight = F;
+
+    const QUADS: usize = 3;
+
+    #[inline(always)]
+    fn to_quads(&self, lobe: &GgxLobe<F, G>) -> (Quads<f32>, F) {
+        let mut quads = [[0.0; 4]; MAX_QUADS];
+        [quads[0], quads[1]] = lobe.quads();
+        quads[2][0] = lobe.ggx().roughness();
+        (quads, *lobe.fresnel())
+    }
+
+    #[inline(always)]
+    fn unit_bounds<N: Single>(&self, quads: &Quads<N>, fresnels: &[F]) -> Ellipsoids<N> {
+        let lobe = GgxLobes::from_quads([quads[0], quads[1]], quads[2][0]);
+        let radius = ndf_radius_squared::<N, F, G>(&lobe, fresnels).sqrt();
+        ellipsoids_around(&lobe, lobe.roughness, radius)
     }
 }
 
-impl<F: Fresnel, G: MaskingShadowing> Vpl<GgxLobe<F, G>> {
-    /// The [triaxial bound](GgxLobe::triaxial_bound) of everything that accepts this light in a frame with
-    /// `roulette` and `xi`.
-    pub fn triaxial_bound(&self, roulette: &Roulette, xi: Xi) -> Ellipsoid {
-        let scale = roulette.scale(self.flux(), xi);
-        self.lobe().triaxial_bound().placed(self.position(), scale)
-    }
+/// r² for the joint maximum of F and G2.
+#[inline(always)]
+pub(super) fn ndf_radius_squared<N: Single, F: Fresnel, G: MaskingShadowing>(
+    lobe: &GgxLobes<N>,
+    fresnels: &[F],
+) -> N {
+    lobe.max_reflected::<F, G>(fresnels) * lobe.masking_over_four_cosines() * FRAC_1_PI
 }
 
-/// The ellipsoid around the surface of r = `radius` and α = `alpha`, for the directions of `lobe`.
-pub(super) fn ellipsoid_around<F: Fresnel, G>(
-    lobe: &GgxLobe<F, G>,
-    alpha: f32,
-    radius: f32,
-) -> Ellipsoid {
-    let shape = Triaxial::new(alpha, lobe.incident_cosine(), lobe.incident_sine());
-    let rotation = lobe.rotation();
-    let distance = radius * ((1.0 - alpha) * (1.0 + alpha) / (2.0 * alpha));
-    let long = radius * ((1.0 + alpha * alpha) / (2.0 * alpha));
-    let semi_axes = Vec3::new(
+/// The ellipsoids around the surface of r = `radius` and α = `alpha`, for the directions of `lobe`.
+#[inline(always)]
+pub(super) fn ellipsoids_around<N: Single>(
+    lobe: &GgxLobes<N>,
+    alpha: N,
+    radius: N,
+) -> Ellipsoids<N> {
+    let plane = lobe.plane_of_incidence();
+    let shape = Proportions::new(alpha, lobe.incident_cosine, plane.sine);
+    let (u, w) = (plane.mirror, plane.across);
+    let distance = radius * (alpha.one_minus() * (alpha + 1.0) / (alpha * 2.0));
+    let long = radius * ((alpha * alpha + 1.0) / (alpha * 2.0));
+    let semi_axes = Vector3::new(
         long * shape.in_plane,
         radius * shape.in_plane,
         radius * shape.across,
     );
     // The rounding of the axes to f32 tilts them by √3·1.5u at most.
     let shortest = semi_axes.y.min(semi_axes.z);
-    let tilt = 4.0 * math::UNIT_ROUNDOFF * (semi_axes.x / shortest);
-    let semi_axes = semi_axes * math::round_up(1.0 + tilt, 64);
-    Ellipsoid::from_parts(Vec3::ZERO, rotation.x_axis * distance, rotation, semi_axes)
+    let tilt = semi_axes.x / shortest * (4.0 * UNIT_ROUNDOFF);
+    Ellipsoids {
+        parts: [Vector3::zero(radius), u * distance],
+        axes: Matrix3::new(u, w.cross(u), w),
+        semi_axes: semi_axes * (tilt + 1.0).round_up(64),
+    }
 }
 
 /// The semi-axes over those of the paper's spheroid.
 #[derive(Clone, Copy)]
-struct Triaxial {
-    in_plane: f32,
-    across: f32,
+struct Proportions<N> {
+    in_plane: N,
+    across: N,
 }
 
-impl Triaxial {
-    fn new(alpha: f32, cosine: f32, sine: f32) -> Self {
+impl<N: Single> Proportions<N> {
+    #[inline(always)]
+    fn new(alpha: N, cosine: N, sine: N) -> Self {
         let (alpha_squared, sine_squared) = (alpha * alpha, sine * sine);
-        let k = (1.0 - alpha) * (1.0 + alpha);
+        let k = alpha.one_minus() * (alpha + 1.0);
         let bend = k * sine_squared;
-        let sum = 1.0 + alpha_squared;
+        let sum = alpha_squared + 1.0;
         let exact = alpha_squared * sine_squared + cosine * cosine;
         let beta = sum / (sum + bend);
         // β − L, which cancels at normal incidence if it is subtracted.
         let excess = bend * (alpha_squared + bend) / (sum + bend);
-        let d = 2.0 * alpha_squared * bend * (sum + bend) / (sum * sum);
-        if d <= 0.0 {
+        let d = alpha_squared * 2.0 * bend * (sum + bend) / (sum * sum);
+        let one = d.splat(1.0);
+        let bends = d.is_positive();
+        if N::is_known_false(bends) {
             return Self {
-                in_plane: 1.0,
-                across: 1.0,
+                in_plane: one,
+                across: one,
             };
         }
-        let across_squared = |x: f32| {
-            let y = x + math::sqrt(x * (2.0 * d * (1.0 - x) + x));
-            let rest = (1.0 - x) * d;
-            (y * exact + rest * beta) / (y + rest)
-        };
-        let far = enlargement_far_above(d, exact, beta, excess);
-        let x = if 3.0 * far > d {
-            far
+        let far_above = enlargement_far_above(d, exact, beta, excess);
+        let is_far_above = (far_above * 3.0).gt(d);
+        let x = if N::is_known_false(!is_far_above) {
+            far_above
         } else {
-            enlargement_far_below(d, exact, beta, excess)
+            let far_below = enlargement_far_below(d, exact, beta, excess);
+            N::select(is_far_above, far_above, far_below)
         };
-        Self {
-            in_plane: 1.0 / math::sqrt(1.0 - x),
-            across: math::sqrt(across_squared(x)),
-        }
+        let y = x + (x * (d * 2.0 * x.one_minus() + x)).sqrt();
+        let rest = x.one_minus() * d;
+        let across = ((y * exact + rest * beta) / (y + rest)).sqrt();
+        let in_plane = x.one_minus().sqrt().recip();
+        let [in_plane, across] = N::select_all(bends, [in_plane, across], [one, one]);
+        Self { in_plane, across }
     }
 }
 
 /// The positive root of ax² + bx = c, or zero for c ≤ 0.
-fn positive_root(a: f32, b: f32, c: f32) -> f32 {
-    let c = c.max(0.0);
-    2.0 * c / (b + math::sqrt(b * b + 4.0 * a * c))
+#[inline(always)]
+fn positive_root<N: Single>(a: N, b: N, c: N) -> N {
+    let c = c.max(c.zero());
+    c * 2.0 / (b + (b * b + a * 4.0 * c).sqrt())
 }
 
 /// The x of least volume, if it is far above d.
-fn enlargement_far_above(d: f32, exact: f32, beta: f32, excess: f32) -> f32 {
-    let twice = 2.0 * d;
-    let slope = twice * (5.0 * exact + 3.0 * beta);
+#[inline(always)]
+fn enlargement_far_above<N: Single>(d: N, exact: N, beta: N, excess: N) -> N {
+    let twice = d * 2.0;
+    let slope = twice * (exact * 5.0 + beta * 3.0);
     let height = twice * (excess - twice * (exact + beta));
-    positive_root(8.0 * exact, slope, height).min(0.5)
+    positive_root(exact * 8.0, slope, height).min(d.splat(0.5))
 }
 
 /// The x of least volume, if it is far below d. With √(2dx) = 2ds: s(sL + β/2)(s + ½) = (β − L)/(16d).
-fn enlargement_far_below(d: f32, exact: f32, beta: f32, excess: f32) -> f32 {
-    let twice = 2.0 * d;
-    let s = positive_root(0.5 * (beta + exact), 0.25 * beta, excess / (8.0 * twice));
+#[inline(always)]
+fn enlargement_far_below<N: Single>(d: N, exact: N, beta: N, excess: N) -> N {
+    let twice = d * 2.0;
+    let s = positive_root((beta + exact) * 0.5, beta * 0.25, excess / (twice * 8.0));
     let root = twice * s;
     // From y − x = root back to x.
-    let x =
-        2.0 * root * root / (twice + math::sqrt(twice * twice + 4.0 * (1.0 - twice) * root * root));
-    x.min(0.5)
+    let x = root * 2.0 * root
+        / (twice + (twice * twice + twice.one_minus() * 4.0 * root * root).sqrt());
+    x.min(d.splat(0.5))
 }

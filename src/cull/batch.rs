@@ -1,22 +1,28 @@
 use alloc::vec::Vec;
 
 use super::lanes::{LANES, Lanes};
-use super::shape::{BatchShape, InLanes, Lane};
+use crate::project::{Field, Projected};
 
-/// Sixteen lights: the numbers that the tile test takes, and which lights they are.
+/// Sixteen lights: the fields of their shapes, and which lights they are.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(super) struct Chunk<T: InLanes> {
-    pub fields: T::Fields<Lanes>,
-    pub numbers: Lanes<u32>,
+pub(super) struct Chunk<P: Projected> {
+    pub fields: P::Fields<Lanes>,
+    pub lights: Lanes<u32>,
 }
 
-impl<T: InLanes> Chunk<T> {
+impl<P: Projected> Chunk<P> {
     /// No lights.
-    pub const NOWHERE: Self = Self {
-        fields: T::NOWHERE,
-        numbers: [0; LANES],
-    };
+    pub fn nowhere() -> Self {
+        let mut fields = P::fields_of([0.0; LANES]);
+        for (lanes, nowhere) in fields.as_mut().iter_mut().zip(P::NOWHERE.as_ref()) {
+            *lanes = [*nowhere; LANES];
+        }
+        Self {
+            fields,
+            lights: [0; LANES],
+        }
+    }
 
     /// Puts the light in the lane `from_lane` of `from` in `lane`.
     #[inline(always)]
@@ -25,13 +31,13 @@ impl<T: InLanes> Chunk<T> {
         for (to, field) in fields.zip(from.fields.as_ref()) {
             to[lane] = field[from_lane];
         }
-        self.numbers[lane] = from.numbers[from_lane];
+        self.lights[lane] = from.lights[from_lane];
     }
 
     /// The fields of the light in `lane`.
     #[inline(always)]
-    pub fn fields_of<V: Lane + From<f32>>(&self, lane: usize) -> T::Fields<V> {
-        let mut fields = T::fields_of(V::from(0.0));
+    pub fn fields_of<T: Field + From<f32>>(&self, lane: usize) -> P::Fields<T> {
+        let mut fields = P::fields_of(T::from(0.0));
         for (field, lanes) in fields.as_mut().iter_mut().zip(self.fields.as_ref()) {
             *field = lanes[lane].into();
         }
@@ -79,13 +85,13 @@ impl Reach {
 /// ([`DepthOrder`](super::DepthOrder)). Keeps its memory when cleared.
 ///
 /// ```
-/// use stochastic_light_culling::{Camera, CameraSphere, LightBatch, Sphere, glam::Vec3};
+/// use stochastic_light_culling::{Camera, LightBatch, Sphere, glam::Vec3};
 ///
 /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
 /// let mut batch = LightBatch::new();
-/// for number in 0..100 {
-///     let sphere = Sphere::new(Vec3::new(0.0, 0.0, -0.5 * number as f32), 1.0)?;
-///     batch.extend(CameraSphere::new(&sphere, &camera).map(|shape| (number, shape)));
+/// for light in 0..100 {
+///     let sphere = Sphere::new(Vec3::new(0.0, 0.0, -0.5 * light as f32), 1.0)?;
+///     batch.extend(sphere.project(&camera).map(|shape| (light, shape)));
 /// }
 /// assert_eq!(batch.len(), 100);
 /// # Ok::<(), stochastic_light_culling::Error>(())
@@ -95,39 +101,42 @@ impl Reach {
 ///
 /// ```
 /// use stochastic_light_culling::{
-///     BatchBound, BatchBuilder, BatchLobe, LightBatch, Vpl, Xi,
+///     BatchBuilder, Bounded, FrameSeed, LightBatch, Project, ProjectedBound, Vpl,
 /// };
 ///
-/// /// Lights that a frame has anew.
-/// fn batch_of<L: BatchLobe>(lights: &[Vpl<L>], builder: &BatchBuilder) -> LightBatch<L::Shape> {
+/// /// Lights that are new in each frame.
+/// fn batch_of<L: Bounded<Shape: Project>>(
+///     lights: &[Vpl<L>],
+///     builder: &BatchBuilder,
+/// ) -> LightBatch<ProjectedBound<L>> {
 ///     let mut batch = LightBatch::new();
-///     let frame = 0;
-///     let given = (0..).zip(lights).map(|(i, light)| (i, light, Xi::hashed(i, frame, 0)));
-///     builder.add(given, &mut batch);
+///     let seed = FrameSeed { frame: 0, seed: 0 };
+///     let with_xi = (0..).zip(lights).map(|(i, light)| (i, light, seed.xi(i)));
+///     builder.add(with_xi, &mut batch);
 ///     batch
 /// }
 ///
 /// /// Lights whose bounds were kept, here all with the same scale.
-/// fn batch_of_bounds<L: BatchLobe, B: BatchBound>(
-///     lights: &[(Vpl<L>, B)],
+/// fn batch_of_bounds<L: Bounded<Shape: Project>>(
+///     lights: &[(Vpl<L>, L::Shape)],
 ///     builder: &BatchBuilder,
 ///     scale: f32,
-/// ) -> LightBatch<B::Shape> {
+/// ) -> LightBatch<ProjectedBound<L>> {
 ///     let mut batch = LightBatch::new();
-///     let given = (0..).zip(lights);
-///     let given = given.map(|(i, (light, bound))| (i, bound, light.position(), scale));
-///     builder.add_placed(given, &mut batch);
+///     let lights = (0..).zip(lights);
+///     let placed = lights.map(|(i, (light, bound))| (i, bound, light.position(), scale));
+///     builder.add_placed(placed, &mut batch);
 ///     batch
 /// }
 /// ```
 #[derive(Clone, Debug)]
-pub struct LightBatch<T: BatchShape> {
+pub struct LightBatch<P: Projected> {
     len: usize,
-    pub(super) chunks: Vec<Chunk<T>>,
+    pub(super) chunks: Vec<Chunk<P>>,
     pub(super) reach: Vec<Reach>,
 }
 
-impl<T: BatchShape> LightBatch<T> {
+impl<P: Projected> LightBatch<P> {
     /// A batch without lights.
     pub const fn new() -> Self {
         Self {
@@ -152,27 +161,27 @@ impl<T: BatchShape> LightBatch<T> {
         self.len = 0;
     }
 
-    /// Adds a light, which lists will call `number`.
-    pub fn push(&mut self, number: u32, shape: &T) {
+    /// Adds a light by its index `light`, which lists will hold, and its shape in camera space.
+    pub fn push(&mut self, light: u32, shape: &P) {
         let (chunk, lane) = (self.len / LANES, self.len % LANES);
         if lane == 0 {
-            self.begin(chunk, &Chunk::NOWHERE);
+            self.begin(chunk, &Chunk::nowhere());
         }
-        let Chunk { fields, numbers } = &mut self.chunks[chunk];
-        let of_shape = shape.fields();
+        let Chunk { fields, lights } = &mut self.chunks[chunk];
+        let of_shape = shape.to_fields();
         for (lanes, field) in fields.as_mut().iter_mut().zip(of_shape.as_ref()) {
             lanes[lane] = *field;
         }
-        numbers[lane] = number;
-        self.reach[chunk / LANES].widen(chunk % LANES, shape.reach());
+        lights[lane] = light;
+        self.reach[chunk / LANES].widen(chunk % LANES, P::reach_of_fields(&of_shape));
         self.len += 1;
     }
 
-    /// The lights, with their numbers, in their order.
-    pub fn iter(&self) -> impl Iterator<Item = (u32, T)> {
+    /// The indices of the lights and their shapes, in their order.
+    pub fn iter(&self) -> impl Iterator<Item = (u32, P)> {
         (0..self.len).map(|index| {
             let (chunk, lane) = (&self.chunks[index / LANES], index % LANES);
-            (chunk.numbers[lane], T::from_fields(chunk.fields_of(lane)))
+            (chunk.lights[lane], P::from_fields(chunk.fields_of(lane)))
         })
     }
 
@@ -183,7 +192,7 @@ impl<T: BatchShape> LightBatch<T> {
 
     /// Adds the lights of `chunk` that `bits` tell, all of which reach depths within `reach`.
     #[inline(always)]
-    pub(super) fn append(&mut self, chunk: &Chunk<T>, bits: u32, reach: [f32; 2]) {
+    pub(super) fn append(&mut self, chunk: &Chunk<P>, bits: u32, reach: [f32; 2]) {
         if bits == ALL && self.next_lane() == 0 {
             let index = self.len / LANES;
             self.begin(index, chunk);
@@ -195,13 +204,13 @@ impl<T: BatchShape> LightBatch<T> {
     }
 
     /// `append`, light by light.
-    fn append_some(&mut self, chunk: &Chunk<T>, mut bits: u32, reach: [f32; 2]) {
+    fn append_some(&mut self, chunk: &Chunk<P>, mut bits: u32, reach: [f32; 2]) {
         while bits != 0 {
             let from = bits.trailing_zeros() as usize % LANES;
             bits &= bits - 1;
             let (index, to) = (self.len / LANES, self.next_lane());
             if to == 0 {
-                self.begin(index, &Chunk::NOWHERE);
+                self.begin(index, &Chunk::nowhere());
             }
             self.chunks[index].copy(to, chunk, from);
             self.reach[index / LANES].widen(index % LANES, reach);
@@ -211,7 +220,7 @@ impl<T: BatchShape> LightBatch<T> {
 
     /// Makes `chunk` the one at `index`, which is at most the end.
     #[inline(always)]
-    fn begin(&mut self, index: usize, chunk: &Chunk<T>) {
+    fn begin(&mut self, index: usize, chunk: &Chunk<P>) {
         set_or_push(&mut self.chunks, index, chunk);
         if index % LANES == 0 {
             set_or_push(&mut self.reach, index / LANES, &Reach::NONE);
@@ -219,7 +228,7 @@ impl<T: BatchShape> LightBatch<T> {
     }
 
     /// The chunks that hold lights.
-    pub(super) fn chunks(&self) -> &[Chunk<T>] {
+    pub(super) fn chunks(&self) -> &[Chunk<P>] {
         &self.chunks[..self.len.div_ceil(LANES)]
     }
 
@@ -230,12 +239,12 @@ impl<T: BatchShape> LightBatch<T> {
 
     /// Removes all lights, and gives chunks for as many as `other` has, to be filled from outside, and
     /// their empty reaches.
-    pub(super) fn make_room_for(&mut self, other: &Self) -> (&mut [Chunk<T>], &mut [Reach]) {
+    pub(super) fn make_room_for(&mut self, other: &Self) -> (&mut [Chunk<P>], &mut [Reach]) {
         self.len = 0;
         // One more: where the last one may spill.
         let (chunks, reach) = (other.chunks().len() + 1, other.reach().len() + 1);
-        grow(&mut self.chunks, chunks, &Chunk::NOWHERE);
-        grow(&mut self.reach, reach, &Reach::NONE);
+        grow(&mut self.chunks, chunks, Chunk::nowhere);
+        grow(&mut self.reach, reach, || Reach::NONE);
         self.reach[..reach].fill(Reach::NONE);
         (&mut self.chunks[..chunks], &mut self.reach[..reach])
     }
@@ -246,25 +255,25 @@ impl<T: BatchShape> LightBatch<T> {
     }
 }
 
-impl<T: BatchShape> Default for LightBatch<T> {
+impl<P: Projected> Default for LightBatch<P> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<T: BatchShape> Extend<(u32, T)> for LightBatch<T> {
-    fn extend<I: IntoIterator<Item = (u32, T)>>(&mut self, lights: I) {
-        for (number, shape) in lights {
-            self.push(number, &shape);
+impl<P: Projected> Extend<(u32, P)> for LightBatch<P> {
+    fn extend<I: IntoIterator<Item = (u32, P)>>(&mut self, lights: I) {
+        for (light, shape) in lights {
+            self.push(light, &shape);
         }
     }
 }
 
 /// Makes room for `len` values, and where there was none for half as many again: what a frame needs
 /// depends on its random numbers.
-pub(super) fn grow<V: Copy>(values: &mut Vec<V>, len: usize, value: &V) {
+pub(super) fn grow<V: Copy>(values: &mut Vec<V>, len: usize, value: impl FnOnce() -> V) {
     if values.len() < len {
-        values.resize(len + len / 2, *value);
+        values.resize(len + len / 2, value());
     }
 }
 

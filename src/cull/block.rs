@@ -4,29 +4,30 @@ use alloc::vec::Vec;
 
 use fearless_simd::Simd;
 
-use super::batch::{Chunk, grow};
+use super::batch::grow;
 use super::exact::list_exactly;
-use super::filter::filter;
-use super::lanes::{parts, splat, store};
-use super::shape::{BatchShape, TileLanes};
+use super::filter::{filter, load_fields};
+use super::lanes::{parts, splat_tile, store};
 use super::tile_depths::{Area, NONE};
 use super::tile_list::{Row, list};
 use super::{CullCounters, LightBatch, LightLists, TileDepths};
+use crate::num::F32Lanes;
+use crate::touch::{BoxTest, TileBounds};
 
 /// The memory of a culler.
 #[derive(Clone, Debug)]
-pub(super) struct Scratch<T: BatchShape> {
+pub(super) struct Scratch<P: BoxTest> {
     /// The lights of a block of each size, from the largest.
-    blocks: Vec<LightBatch<T>>,
+    blocks: Vec<LightBatch<P>>,
     levels: usize,
     /// Chunk by chunk, what the lights share with all tiles of a row.
-    rows: Vec<Row<T>>,
+    rows: Vec<Row<P>>,
     /// Whether lists are of the exact test.
     pub exact: bool,
     pub counters: CullCounters,
 }
 
-impl<T: BatchShape> Scratch<T> {
+impl<P: BoxTest> Scratch<P> {
     pub fn new() -> Self {
         Self {
             blocks: Vec::new(),
@@ -50,7 +51,7 @@ impl<T: BatchShape> Scratch<T> {
     pub fn cull<S: Simd>(
         &mut self,
         simd: S,
-        lights: &LightBatch<T>,
+        lights: &LightBatch<P>,
         tiles: &TileDepths,
         area: Area,
         lists: &mut LightLists,
@@ -72,24 +73,24 @@ impl<T: BatchShape> Scratch<T> {
     }
 }
 
-struct Walk<'a, T: BatchShape> {
+struct Walk<'a, P: BoxTest> {
     tiles: &'a TileDepths,
     lists: &'a mut LightLists,
     /// The tile whose lists come first.
     origin: [usize; 2],
-    rows: &'a mut Vec<Row<T>>,
+    rows: &'a mut Vec<Row<P>>,
     exact: bool,
     counters: &'a mut CullCounters,
 }
 
-impl<T: BatchShape> Walk<'_, T> {
+impl<P: BoxTest> Walk<'_, P> {
     /// The lists of the tiles of `area`, which `lights` may all touch.
     fn block<S: Simd>(
         &mut self,
         simd: S,
-        lights: &LightBatch<T>,
+        lights: &LightBatch<P>,
         area: Area,
-        blocks: &mut [LightBatch<T>],
+        blocks: &mut [LightBatch<P>],
     ) {
         if blocks.is_empty() {
             simd.vectorize(
@@ -107,11 +108,11 @@ impl<T: BatchShape> Walk<'_, T> {
     fn part<S: Simd>(
         &mut self,
         simd: S,
-        lights: &LightBatch<T>,
+        lights: &LightBatch<P>,
         area: Area,
-        blocks: &mut [LightBatch<T>],
+        blocks: &mut [LightBatch<P>],
     ) {
-        let Some([across, down, depths]) = self.tiles.around(area) else {
+        let Some(around) = self.tiles.around(area) else {
             self.counters.empty += 1;
             return;
         };
@@ -121,7 +122,7 @@ impl<T: BatchShape> Walk<'_, T> {
         simd.vectorize(
             #[inline(always)]
             || {
-                let tile = TileLanes::new(simd, across, down, depths);
+                let tile = splat_tile(simd, around);
                 self.counters.block_tests += filter(simd, lights, &tile, block);
             },
         );
@@ -132,36 +133,42 @@ impl<T: BatchShape> Walk<'_, T> {
 
     /// The lists of the tiles of `area`, one by one.
     #[inline(always)]
-    fn tiles<S: Simd>(&mut self, simd: S, lights: &LightBatch<T>, area: Area) {
+    fn tiles<S: Simd>(&mut self, simd: S, lights: &LightBatch<P>, area: Area) {
         let chunks = lights.chunks();
-        grow(self.rows, chunks.len(), &Row::NONE);
+        grow(self.rows, chunks.len(), Row::none);
         let rows = &mut self.rows[..chunks.len()];
         for y in area.min[1]..area.max[1] {
             let down = self.tiles.down(y);
-            for (Chunk { fields, .. }, row) in chunks.iter().zip(&mut *rows) {
+            let down_in_lanes = [F32Lanes::new(simd, down[0]), F32Lanes::new(simd, down[1])];
+            for (chunk, row) in chunks.iter().zip(&mut *rows) {
                 for part in 0..parts::<S>() {
-                    let shared = T::row(simd, fields, part, splat(simd, down));
+                    let fields = load_fields(simd, chunk, part);
+                    let shared = P::row(&fields, down_in_lanes);
                     for (lanes, vector) in row.0.as_mut().iter_mut().zip(shared.as_ref()) {
-                        store::<S>(lanes, part, *vector);
+                        store(lanes, part, *vector);
                     }
                 }
             }
             for x in area.min[0]..area.max[0] {
                 let across = self.tiles.across(x);
                 let first = self.lists.slot([x - self.origin[0], y - self.origin[1]]);
-                for (interval, depths) in self.tiles.depths(x, y).iter().enumerate() {
+                for (interval, depths) in self.tiles.depths_of(x, y).iter().enumerate() {
                     if *depths == NONE {
                         self.counters.empty += 1;
                         continue;
                     }
                     let start = self.lists.len();
+                    let tile = TileBounds {
+                        across,
+                        down,
+                        depths: *depths,
+                    };
                     if self.exact {
-                        let sides = [across, down, *depths];
-                        let tested = list_exactly(simd, lights, rows, sides, self.lists);
+                        let tested = list_exactly(simd, lights, rows, tile, self.lists);
                         self.counters.tile_tests += tested.lights;
                         self.counters.rejected_exactly += tested.rejected;
                     } else {
-                        let tile = TileLanes::new(simd, across, down, *depths);
+                        let tile = splat_tile(simd, tile);
                         self.counters.tile_tests += list(simd, lights, rows, &tile, self.lists);
                     }
                     self.lists.end(first + interval, start);

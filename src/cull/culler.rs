@@ -4,9 +4,9 @@ use alloc::vec::Vec;
 use fearless_simd::{Level, dispatch};
 
 use super::block::Scratch;
-use super::shape::BatchShape;
 use super::{LightBatch, LightLists, TileDepths};
-use crate::Error;
+use crate::base::Error;
+use crate::touch::BoxTest;
 
 /// Finds the lights of each tile.
 ///
@@ -15,22 +15,20 @@ use crate::Error;
 ///
 /// ```
 /// use stochastic_light_culling::{
-///     Camera, CameraSphere, Culler, DepthInterval, LightBatch, LightLists, Sphere, TileDepths,
+///     Camera, Culler, DepthInterval, LightBatch, LightLists, Sphere, TileDepths,
 ///     TileGrid, glam::Vec3,
 /// };
 ///
 /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
 /// let grid = TileGrid::new([128, 128], 16)?;
-/// let mut tiles = TileDepths::new(grid.size(), 1, |tile| {
-///     camera.tile_rectangle([128, 128], grid.pixels(tile))
-/// })?;
+/// let mut tiles = TileDepths::new(&grid, &camera, 1)?;
 /// for tile in grid.tiles() {
 ///     tiles.set(tile, [DepthInterval::new(5.0, 20.0)?]);
 /// }
 ///
 /// let mut batch = LightBatch::new();
 /// let sphere = Sphere::new(Vec3::new(0.0, 0.0, -10.0), 1.0)?;
-/// batch.extend(CameraSphere::new(&sphere, &camera).map(|shape| (7, shape)));
+/// batch.extend(sphere.project(&camera).map(|shape| (7, shape)));
 ///
 /// let mut lists = LightLists::new();
 /// Culler::new().cull(&batch, &tiles, &mut lists)?;
@@ -39,12 +37,12 @@ use crate::Error;
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Culler<T: BatchShape> {
+pub struct Culler<P: BoxTest> {
     pub(super) level: Level,
     pub(super) blocks: bool,
-    pub(super) scratch: Scratch<T>,
+    pub(super) scratch: Scratch<P>,
     #[cfg(feature = "rayon")]
-    pub(super) workers: Vec<super::parallel::Worker<T>>,
+    pub(super) workers: Vec<super::parallel::Worker<P>>,
 }
 
 /// What one cull did, and what it was spared.
@@ -63,7 +61,7 @@ pub struct CullCounters {
     pub pairs: u64,
 }
 
-impl<T: BatchShape> Culler<T> {
+impl<P: BoxTest> Culler<P> {
     /// A culler with the widest vectors that this processor has; without the feature `std`, that the
     /// target is compiled for.
     pub fn new() -> Self {
@@ -76,25 +74,24 @@ impl<T: BatchShape> Culler<T> {
     ///
     /// ```
     /// use stochastic_light_culling::{
-    ///     BatchBuilder, Camera, Culler, DepthInterval, Direction, Ggx, GgxLobe, LightBatch,
+    ///     BatchBuilder, Camera, Culler, DepthInterval, Direction, Ggx, GgxLobe, Incidence, LightBatch,
     ///     LightLists, NoFresnel, Roulette, TileDepths, TileGrid, Vpl, Xi, glam::Vec3,
     /// };
     ///
     /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
     /// let grid = TileGrid::new([128, 128], 16)?;
-    /// let rectangle = |tile| camera.tile_rectangle([128, 128], grid.pixels(tile));
-    /// let mut tiles = TileDepths::new(grid.size(), 1, rectangle)?;
+    /// let mut tiles = TileDepths::new(&grid, &camera, 1)?;
     /// for tile in grid.tiles() {
     ///     tiles.set(tile, [DepthInterval::new(5.0, 20.0)?]);
     /// }
-    /// let lobe = GgxLobe::new(Ggx::new(0.2)?, NoFresnel, Direction::Y, Direction::Y);
+    /// let lobe = GgxLobe::new(Ggx::new(0.2)?, NoFresnel, Incidence::head_on(Direction::Y));
     /// let light = Vpl::new(Vec3::new(0.0, -1.0, -9.0), 1.0, lobe)?;
     ///
     /// let builder = BatchBuilder::new(&Roulette::new(0.01)?, &camera);
     /// let mut lists = [4, 8, 16].map(|_| LightLists::new());
     /// for (lists, lanes) in lists.iter_mut().zip([4, 8, 16]) {
     ///     let mut batch = LightBatch::new();
-    ///     builder.with_lanes(lanes).add_tight([(3, &light, Xi::new(0.5)?)], &mut batch);
+    ///     builder.with_lanes(lanes).add([(3, &light, Xi::new(0.5)?)], &mut batch);
     ///     Culler::with_lanes(lanes).cull(&batch, &tiles, lists)?;
     /// }
     /// assert!(!lists[0].is_empty() && lists[0] == lists[1] && lists[1] == lists[2]);
@@ -131,7 +128,7 @@ impl<T: BatchShape> Culler<T> {
     ///
     /// ```
     /// use stochastic_light_culling::{
-    ///     Camera, Culler, DepthInterval, Ellipsoid, LightBatch, LightLists, Stretch, TileDepths,
+    ///     Camera, Culler, DepthInterval, Ellipsoid, LightBatch, LightLists, TileDepths,
     ///     TileRectangle, glam::{Mat3, Vec2, Vec3},
     /// };
     ///
@@ -140,9 +137,9 @@ impl<T: BatchShape> Culler<T> {
     /// let center = Vec3::new(5.5, 0.0, -5.2);
     /// let ellipsoid = Ellipsoid::new(center, Mat3::IDENTITY, Vec3::new(0.5, 1.0, 0.5))?;
     /// let mut batch = LightBatch::new();
-    /// batch.extend(Stretch::new(&ellipsoid, &camera).map(|stretch| (0, stretch)));
+    /// batch.extend(ellipsoid.project(&camera).map(|stretch| (0, stretch)));
     /// let tile = TileRectangle::new(Vec2::new(0.5, 0.0), Vec2::new(0.6, 0.1))?;
-    /// let mut tiles = TileDepths::new([1, 1], 1, |_| tile)?;
+    /// let mut tiles = TileDepths::from_rectangles([1, 1], 1, |_| tile)?;
     /// tiles.set([0, 0], [DepthInterval::new(5.0, 10.0)?]);
     ///
     /// let mut lists = LightLists::new();
@@ -168,7 +165,7 @@ impl<T: BatchShape> Culler<T> {
     /// [`Error::Size`], with empty lists, if all lists together hold more lights than a `u32` counts.
     pub fn cull(
         &mut self,
-        batch: &LightBatch<T>,
+        batch: &LightBatch<P>,
         tiles: &TileDepths,
         lists: &mut LightLists,
     ) -> Result<CullCounters, Error> {
@@ -220,7 +217,7 @@ pub(super) fn at_most(lanes: usize) -> Level {
     widest
 }
 
-impl<T: BatchShape> Default for Culler<T> {
+impl<P: BoxTest> Default for Culler<P> {
     fn default() -> Self {
         Self::new()
     }

@@ -2,7 +2,7 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use crate::Camera;
+use crate::view::Camera;
 
 /// The order of lights from near to far, in which a [`LightBatch`](crate::LightBatch) is culled fastest.
 ///

@@ -3,12 +3,11 @@
 use fearless_simd::{Simd, SimdBase, SimdMask};
 
 use super::batch::Chunk;
-use super::lanes::{LANES, load, parts};
-use super::shape::{BatchShape, TileLanes};
+use super::lanes::{LANES, load, parts, splat_tile};
 use super::tile_list::{Row, find};
-use super::wide_lanes::Wide;
 use super::{LightBatch, LightLists};
-use crate::tile::Frustum;
+use crate::num::{F32Lanes, Single};
+use crate::touch::{BoxTest, Frustum, TileBounds};
 
 /// How many lights were tested, and how many of those that pass the box test do not touch the tile.
 pub(super) struct Tested {
@@ -16,28 +15,28 @@ pub(super) struct Tested {
     pub rejected: u64,
 }
 
-/// Appends the lights that touch the tile with these `sides`, exactly, to `lists`.
+/// Appends the lights that touch `tile`, exactly, to `lists`.
 ///
 /// A function of its own, so that culling without it is compiled as if it were not there.
 #[inline(never)]
-pub(super) fn list_exactly<S: Simd, T: BatchShape>(
+pub(super) fn list_exactly<S: Simd, P: BoxTest>(
     simd: S,
-    lights: &LightBatch<T>,
-    rows: &[Row<T>],
-    sides: [[f32; 2]; 3],
+    lights: &LightBatch<P>,
+    rows: &[Row<P>],
+    tile: TileBounds<f32>,
     lists: &mut LightLists,
 ) -> Tested {
     simd.vectorize(
         #[inline(always)]
         || {
             let places = lists.room_for((lights.chunks().len() + 1) * LANES);
-            let place = |chunk: usize, _: &Chunk<T>, part: usize| {
+            let place = |chunk: usize, _: &Chunk<P>, part: usize| {
                 let first = (chunk * LANES + part * S::u32s::LEN) as u32;
                 S::u32s::from_slice(simd, &FIRST_PLACES[..S::u32s::LEN]) + first
             };
-            let tile = TileLanes::new(simd, sides[0], sides[1], sides[2]);
-            let [passed, tested] = find(simd, lights, rows, &tile, place, places);
-            let listed = keep(simd, lights.chunks(), sides, places, passed);
+            let in_lanes = splat_tile(simd, tile);
+            let [passed, tested] = find(simd, lights, rows, &in_lanes, place, places);
+            let listed = keep(simd, lights.chunks(), tile, places, passed);
             lists.take(listed);
             Tested {
                 lights: tested as u64,
@@ -58,17 +57,17 @@ const FIRST_PLACES: [u32; LANES] = {
     places
 };
 
-/// Puts the numbers of those lights that touch the tile in place of the first `count` of `places`; gives
+/// Puts the indices of those lights that touch the tile in place of the first `count` of `places`; gives
 /// how many these are.
 #[inline(always)]
-fn keep<S: Simd, T: BatchShape>(
+fn keep<S: Simd, P: BoxTest>(
     simd: S,
-    chunks: &[Chunk<T>],
-    sides: [[f32; 2]; 3],
+    chunks: &[Chunk<P>],
+    tile: TileBounds<f32>,
     places: &mut [u32],
     count: usize,
 ) -> usize {
-    let (mut side_by_side, mut end) = (Chunk::NOWHERE, 0);
+    let (mut side_by_side, mut end) = (Chunk::nowhere(), 0);
     for start in (0..count).step_by(LANES) {
         let lanes = LANES.min(count - start);
         for (lane, place) in places[start..][..lanes].iter().enumerate() {
@@ -77,8 +76,8 @@ fn keep<S: Simd, T: BatchShape>(
         }
         for part in 0..parts::<S>() {
             let wanted = ((1_u64 << lanes) - 1) >> (part * S::u32s::LEN);
-            let touching = touching(simd, &side_by_side, part, wanted as u32, sides);
-            let of_part = &side_by_side.numbers[part * S::u32s::LEN..][..S::u32s::LEN];
+            let touching = touching(simd, &side_by_side, part, wanted as u32, tile);
+            let of_part = &side_by_side.lights[part * S::u32s::LEN..][..S::u32s::LEN];
             let chosen = S::mask32s::from_bitmask(simd, touching.into());
             let chosen = S::u32s::from_slice(simd, of_part).compress(chosen);
             // Never beyond the places that were read.
@@ -91,27 +90,18 @@ fn keep<S: Simd, T: BatchShape>(
 
 /// Which of the `wanted` lights touch the tile, as bits.
 #[inline(always)]
-fn touching<S: Simd, T: BatchShape>(
+fn touching<S: Simd, P: BoxTest>(
     simd: S,
-    chunk: &Chunk<T>,
+    chunk: &Chunk<P>,
     part: usize,
     wanted: u32,
-    sides: [[f32; 2]; 3],
+    tile: TileBounds<f32>,
 ) -> u32 {
-    let mut fields = T::fields_of(Wide::splat(simd, 0.0));
+    let mut fields = P::fields_of(F32Lanes::new(simd, 0.0).widen());
     for (field, lanes) in fields.as_mut().iter_mut().zip(chunk.fields.as_ref()) {
-        *field = Wide::new(load(simd, lanes, part));
+        *field = load(simd, lanes, part).widen();
     }
-    let wide = |[first, last]: [f32; 2]| {
-        [
-            Wide::splat(simd, first.into()),
-            Wide::splat(simd, last.into()),
-        ]
-    };
-    let frustum = Frustum::new(
-        T::image(&fields),
-        [wide(sides[0]), wide(sides[1]), wide(sides[2])],
-    );
+    let frustum = Frustum::new(P::image(&fields), splat_tile(simd, tile).widen());
     let verdict = frustum.first_verdict();
     let apart = verdict.is_apart | frustum.is_out_of_reach();
     let mut touching = (!(apart | verdict.is_open)).to_bitmask() as u32 & wanted;
@@ -119,14 +109,13 @@ fn touching<S: Simd, T: BatchShape>(
     while open != 0 {
         let lane = open.trailing_zeros();
         open &= open - 1;
-        let meets = meets(chunk, part * S::u32s::LEN + lane as usize, sides);
+        let meets = meets(chunk, part * S::u32s::LEN + lane as usize, tile);
         touching |= u32::from(meets) << lane;
     }
     touching
 }
 
 #[inline(always)]
-fn meets<T: BatchShape>(chunk: &Chunk<T>, lane: usize, sides: [[f32; 2]; 3]) -> bool {
-    let sides = sides.map(|side| side.map(f64::from));
-    Frustum::new(T::image(&chunk.fields_of(lane)), sides).meets_ball()
+fn meets<P: BoxTest>(chunk: &Chunk<P>, lane: usize, tile: TileBounds<f32>) -> bool {
+    Frustum::new(P::image(&chunk.fields_of(lane)), tile.widen()).meets_ball()
 }

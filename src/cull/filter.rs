@@ -5,31 +5,47 @@ use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdMask, f32x16, mask32x16, 
 use super::LightBatch;
 use super::batch::{Chunk, Reach};
 use super::lanes::{LANES, load, parts, store};
-use super::shape::{BatchShape, TileLanes};
+use crate::num::{F32Lanes, Real};
+use crate::project::Projected;
+use crate::touch::{BoxTest, TileBounds};
 
 /// Which of sixteen chunks reach depths of `tile`, as bits.
 #[inline(always)]
-pub(super) fn in_depth<S: Simd>(simd: S, reach: &Reach, tile: &TileLanes<S>) -> u32 {
+pub(super) fn in_depth<S: Simd>(simd: S, reach: &Reach, tile: &TileBounds<F32Lanes<S>>) -> u32 {
     let mut bits = 0;
     for part in 0..parts::<S>() {
-        let near = load(simd, &reach.near, part).simd_le(tile.depths[1]);
-        let far = load(simd, &reach.far, part).simd_ge(tile.depths[0]);
+        let near = load(simd, &reach.near, part).le(tile.depths[1]);
+        let far = tile.depths[0].le(load(simd, &reach.far, part));
         bits |= ((near & far).to_bitmask() as u32) << (part * S::f32s::LEN);
     }
     bits
 }
 
+/// The `part`-th vector of each field of a chunk.
+#[inline(always)]
+pub(super) fn load_fields<S: Simd, P: Projected>(
+    simd: S,
+    chunk: &Chunk<P>,
+    part: usize,
+) -> P::Fields<F32Lanes<S>> {
+    let mut fields = P::fields_of(F32Lanes::new(simd, 0.0));
+    for (vector, lanes) in fields.as_mut().iter_mut().zip(chunk.fields.as_ref()) {
+        *vector = load(simd, lanes, part);
+    }
+    fields
+}
+
 /// Which of a chunk's lights may touch `tile`, as bits.
 #[inline(always)]
-pub(super) fn touching<S: Simd, T: BatchShape>(
+pub(super) fn touching<S: Simd, P: BoxTest>(
     simd: S,
-    chunk: &Chunk<T>,
-    tile: &TileLanes<S>,
+    chunk: &Chunk<P>,
+    tile: &TileBounds<F32Lanes<S>>,
 ) -> u32 {
     let mut bits = 0;
     for part in 0..parts::<S>() {
-        let row = T::row(simd, &chunk.fields, part, tile.down);
-        let misses = T::misses(simd, &chunk.fields, part, &row, tile);
+        let fields = load_fields(simd, chunk, part);
+        let misses = P::misses(&fields, &P::row(&fields, tile.down), tile);
         bits |= ((!misses).to_bitmask() as u32) << (part * S::f32s::LEN);
     }
     bits
@@ -37,11 +53,11 @@ pub(super) fn touching<S: Simd, T: BatchShape>(
 
 /// Copies those of `lights` that may touch `tile` to `kept`, in their order; gives the number of tests.
 #[inline(always)]
-pub(super) fn filter<S: Simd, T: BatchShape>(
+pub(super) fn filter<S: Simd, P: BoxTest>(
     simd: S,
-    lights: &LightBatch<T>,
-    tile: &TileLanes<S>,
-    kept: &mut LightBatch<T>,
+    lights: &LightBatch<P>,
+    tile: &TileBounds<F32Lanes<S>>,
+    kept: &mut LightBatch<P>,
 ) -> u64 {
     let (into, into_reach) = kept.make_room_for(lights);
     let (mut len, mut tested) = (0, 0);
@@ -69,11 +85,11 @@ pub(super) fn filter<S: Simd, T: BatchShape>(
 
 /// Copies the lights of `chunk` that `bits` tell to `into`, from place `start` on.
 #[inline(always)]
-fn append<S: Simd, T: BatchShape>(
+fn append<S: Simd, P: Projected>(
     simd: S,
-    chunk: &Chunk<T>,
+    chunk: &Chunk<P>,
     bits: u32,
-    into: &mut [Chunk<T>],
+    into: &mut [Chunk<P>],
     start: usize,
 ) {
     if S::f32s::LEN == LANES {
@@ -85,10 +101,10 @@ fn append<S: Simd, T: BatchShape>(
 
 /// One light after the other.
 #[inline(always)]
-fn append_each<T: BatchShape>(
-    chunk: &Chunk<T>,
+fn append_each<P: Projected>(
+    chunk: &Chunk<P>,
     mut bits: u32,
-    into: &mut [Chunk<T>],
+    into: &mut [Chunk<P>],
     mut place: usize,
 ) {
     while bits != 0 {
@@ -102,11 +118,11 @@ fn append_each<T: BatchShape>(
 /// All at once: turned so that they begin at the first free lane, and what does not fit at the first
 /// lane of the next chunk.
 #[inline(always)]
-fn append_lanes<S: Simd, T: BatchShape>(
+fn append_lanes<S: Simd, P: Projected>(
     simd: S,
-    chunk: &Chunk<T>,
+    chunk: &Chunk<P>,
     bits: u32,
-    into: &mut [Chunk<T>],
+    into: &mut [Chunk<P>],
     start: usize,
 ) {
     let (index, first) = (start / LANES, start % LANES);
@@ -127,23 +143,24 @@ fn append_lanes<S: Simd, T: BatchShape>(
         merged.store_slice(last);
         turned.store_slice(next);
     }
-    let turned = u32x16::from_slice(simd, &chunk.numbers).swizzle_dyn(lanes);
-    let merged = taken.select(u32x16::from_slice(simd, &last.numbers), turned);
-    merged.store_slice(&mut last.numbers);
-    turned.store_slice(&mut next.numbers);
+    let turned = u32x16::from_slice(simd, &chunk.lights).swizzle_dyn(lanes);
+    let merged = taken.select(u32x16::from_slice(simd, &last.lights), turned);
+    merged.store_slice(&mut last.lights);
+    turned.store_slice(&mut next.lights);
 }
 
 /// Lets the lanes from `len` to the end of its chunk touch nothing.
 #[inline(always)]
-fn blank<S: Simd, T: BatchShape>(simd: S, chunks: &mut [Chunk<T>], len: usize) {
+fn blank<S: Simd, P: Projected>(simd: S, chunks: &mut [Chunk<P>], len: usize) {
     let taken = (1_u64 << (len % LANES)) - 1;
     let fields = chunks[len / LANES].fields.as_mut().iter_mut();
-    for (lanes, nowhere) in fields.zip(T::NOWHERE.as_ref()) {
+    for (lanes, nowhere) in fields.zip(P::NOWHERE.as_ref()) {
         for part in 0..parts::<S>() {
             let of_part = (taken >> (part * S::f32s::LEN)) & ((1 << S::f32s::LEN) - 1);
             let taken = S::mask32s::from_bitmask(simd, of_part);
-            let kept = taken.select(load(simd, lanes, part), load(simd, nowhere, part));
-            store::<S>(lanes, part, kept);
+            let nowhere = F32Lanes::new(simd, *nowhere);
+            let kept = F32Lanes::select(taken, load(simd, lanes, part), nowhere);
+            store(lanes, part, kept);
         }
     }
 }

@@ -1,33 +1,32 @@
 use alloc::vec::Vec;
 
-/// For each tile and depth interval the numbers of the lights that may touch it.
+/// For each tile and depth interval the indices of the lights that may touch it.
 ///
 /// Two arrays, as a GPU reads them: [`ranges`](Self::ranges) says where each list begins and ends in
-/// [`numbers`](Self::numbers). Keeps its memory from frame to frame.
+/// [`lights`](Self::lights). Keeps its memory from frame to frame.
 ///
 /// ```
 /// use stochastic_light_culling::{
-///     Camera, CameraSphere, Culler, DepthInterval, LightBatch, LightLists, Sphere, TileDepths,
+///     Camera, Culler, DepthInterval, LightBatch, LightLists, Sphere, TileDepths,
 ///     TileGrid, glam::Vec3,
 /// };
 ///
 /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 2.0, 0.1..100.0)?;
 /// let grid = TileGrid::new([32, 16], 16)?;
-/// let rectangle = |tile| camera.tile_rectangle([32, 16], grid.pixels(tile));
-/// let mut tiles = TileDepths::new(grid.size(), 1, rectangle)?;
+/// let mut tiles = TileDepths::new(&grid, &camera, 1)?;
 /// for tile in grid.tiles() {
 ///     tiles.set(tile, [DepthInterval::new(5.0, 20.0)?]);
 /// }
 /// // One to the left, one to the right, and one in the middle of a view of two tiles.
 /// let mut batch = LightBatch::new();
-/// for (number, x) in [(7, -3.0), (8, 3.0), (9, 0.0)] {
+/// for (light, x) in [(7, -3.0), (8, 3.0), (9, 0.0)] {
 ///     let sphere = Sphere::new(Vec3::new(x, 0.0, -10.0), 1.0)?;
-///     batch.extend(CameraSphere::new(&sphere, &camera).map(|sphere| (number, sphere)));
+///     batch.extend(sphere.project(&camera).map(|sphere| (light, sphere)));
 /// }
 /// let mut lists = LightLists::new();
 /// Culler::new().cull(&batch, &tiles, &mut lists)?;
 /// assert_eq!(lists.ranges(), [[0, 2], [2, 4]]);
-/// assert_eq!(lists.numbers(), [7, 9, 8, 9]);
+/// assert_eq!(lists.lights(), [7, 9, 8, 9]);
 /// assert_eq!(lists.of([1, 0], 0), [8, 9]);
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
@@ -37,9 +36,9 @@ pub struct LightLists {
     intervals: usize,
     ranges: Vec<[u32; 2]>,
     /// Longer than what is in use, so that whole vectors can be written.
-    numbers: Vec<u32>,
+    lights: Vec<u32>,
     len: usize,
-    /// Whether `numbers` became longer since the lists were empty.
+    /// Whether `lights` became longer since the lists were empty.
     has_grown: bool,
 }
 
@@ -50,7 +49,7 @@ impl LightLists {
             columns: 0,
             intervals: 0,
             ranges: Vec::new(),
-            numbers: Vec::new(),
+            lights: Vec::new(),
             len: 0,
             has_grown: false,
         }
@@ -68,19 +67,19 @@ impl LightLists {
             return &[];
         }
         let [start, end] = self.ranges[self.slot([x, y]) + interval].map(|n| n as usize);
-        &self.numbers[start..end]
+        &self.lights[start..end]
     }
 
     /// Where the list of each depth interval of each tile, row by row, begins and ends in
-    /// [`numbers`](Self::numbers): the `k`-th of n intervals of tile (x, y), with `w` tiles across, is at
+    /// [`lights`](Self::lights): the `k`-th of n intervals of tile (x, y), with `w` tiles across, is at
     /// `(y w + x) n + k`.
     pub fn ranges(&self) -> &[[u32; 2]] {
         &self.ranges
     }
 
     /// The lists, one after the other, in no particular order of the tiles.
-    pub fn numbers(&self) -> &[u32] {
-        &self.numbers[..self.len]
+    pub fn lights(&self) -> &[u32] {
+        &self.lights[..self.len]
     }
 
     /// How many lights all lists hold together.
@@ -106,7 +105,7 @@ impl LightLists {
     #[cfg(feature = "rayon")]
     pub(super) fn append(&mut self, area: super::tile_depths::Area, lists: &Self) {
         let start = self.len;
-        self.room_for(lists.len)[..lists.len].copy_from_slice(lists.numbers());
+        self.room_for(lists.len)[..lists.len].copy_from_slice(lists.lights());
         self.take(lists.len);
         for (y, row) in lists
             .ranges
@@ -127,14 +126,14 @@ impl LightLists {
         (y * self.columns + x) * self.intervals
     }
 
-    /// The numbers not yet in use, at least `count` of them.
+    /// The places not yet in use, at least `count` of them.
     pub(super) fn room_for(&mut self, count: usize) -> &mut [u32] {
         let end = self.len + count;
-        if self.numbers.len() < end {
-            self.numbers.resize(end.max(2 * self.numbers.len()), 0);
+        if self.lights.len() < end {
+            self.lights.resize(end.max(2 * self.lights.len()), 0);
             self.has_grown = true;
         }
-        &mut self.numbers[self.len..]
+        &mut self.lights[self.len..]
     }
 
     /// Leaves room for frames with half as many lights again, if there was none for this one.
@@ -145,7 +144,7 @@ impl LightLists {
         }
     }
 
-    /// Takes the first `count` of the numbers not yet in use.
+    /// Takes the first `count` of the places not yet in use.
     pub(super) fn take(&mut self, count: usize) {
         self.len += count;
     }
@@ -162,6 +161,6 @@ impl LightLists {
 impl PartialEq for LightLists {
     fn eq(&self, other: &Self) -> bool {
         let of = |lists: &Self| [lists.columns, lists.intervals];
-        of(self) == of(other) && self.ranges == other.ranges && self.numbers() == other.numbers()
+        of(self) == of(other) && self.ranges == other.ranges && self.lights() == other.lights()
     }
 }

@@ -6,7 +6,7 @@
 //! that may touch a block, those that may touch a part of it are copied out, sixteen at a time, and only
 //! they go on to that part. Blocks are tested as tiles are, by the box around all that their tiles see.
 //!
-//! Before that, lights become bounds and bounds become shapes, sixteen at a time as well (`build`).
+//! Before that, lights become bounds and bounds become shapes, sixteen at a time as well (`group`).
 //!
 //! Of each sixteen lights the range of depths that they reach is known, and a block or a tile that sees
 //! no such depth passes over them with a sixteenth of a comparison. That is worth most if neighbours in
@@ -14,36 +14,31 @@
 //!
 //! # Why no light is lost
 //!
-//! The lanes of a vector do what [`TileTest::touches`](crate::TileTest::touches) does, operation by
-//! operation, so the lists are those of the scalar test. A block holds its tiles' rectangles and depths,
+//! The lanes of a vector run the function that [`TileTest::touches`](crate::TileTest::touches) runs, so the
+//! lists are those of the scalar test. A block holds its tiles' rectangles and depths,
 //! and every operation of the test is monotone, as is rounding: what touches a tile touches its block,
-//! bit for bit, without any margin. What `build` makes has the bits that the scalar functions give. What
+//! bit for bit, without any margin. The shapes have the bits that the scalar functions give. What
 //! the exact test then rejects is its own promise: see
 //! [`TileTest::touches_exactly`](crate::TileTest::touches_exactly).
 
-// A function that is not inlined is compiled for the least of processors: its vectors would not be.
-#![allow(clippy::inline_always)]
-
 mod batch;
 mod block;
-mod build;
+mod builder;
 mod culler;
 mod depth_order;
 mod exact;
 mod filter;
+mod group;
 mod lanes;
 mod lists;
 #[cfg(feature = "rayon")]
 mod parallel;
-mod shape;
 mod tile_depths;
 mod tile_list;
-mod wide_lanes;
 
 pub use batch::LightBatch;
-pub use build::{BatchBound, BatchBuilder, BatchLobe};
+pub use builder::BatchBuilder;
 pub use culler::{CullCounters, Culler};
 pub use depth_order::DepthOrder;
 pub use lists::LightLists;
-pub use shape::BatchShape;
 pub use tile_depths::TileDepths;

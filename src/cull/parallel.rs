@@ -5,20 +5,20 @@ use rayon::prelude::*;
 
 use super::block::Scratch;
 use super::culler::counted;
-use super::shape::BatchShape;
 use super::tile_depths::Area;
 use super::{CullCounters, Culler, LightBatch, LightLists, TileDepths};
-use crate::Error;
+use crate::base::Error;
+use crate::touch::BoxTest;
 
 /// What culls one block at a time.
 #[derive(Clone, Debug)]
-pub(super) struct Worker<T: BatchShape> {
+pub(super) struct Worker<P: BoxTest> {
     area: Area,
-    scratch: Scratch<T>,
+    scratch: Scratch<P>,
     lists: LightLists,
 }
 
-impl<T: BatchShape + Send + Sync> Culler<T> {
+impl<P: BoxTest + Send + Sync> Culler<P> {
     /// What [`cull`](Self::cull) does, on the threads of rayon's pool: the same lists in the same order.
     ///
     /// Worth it for thousands of tiles. Where a frame has many small grids, such as the subregions of
@@ -26,21 +26,19 @@ impl<T: BatchShape + Send + Sync> Culler<T> {
     ///
     /// ```
     /// use stochastic_light_culling::{
-    ///     Camera, CameraSphere, Culler, DepthInterval, LightBatch, LightLists, Sphere, TileDepths,
+    ///     Camera, Culler, DepthInterval, LightBatch, LightLists, Sphere, TileDepths,
     ///     TileGrid, glam::Vec3,
     /// };
     ///
     /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
     /// let grid = TileGrid::new([1024, 1024], 16)?;
-    /// let mut tiles = TileDepths::new(grid.size(), 1, |tile| {
-    ///     camera.tile_rectangle([1024, 1024], grid.pixels(tile))
-    /// })?;
+    /// let mut tiles = TileDepths::new(&grid, &camera, 1)?;
     /// for tile in grid.tiles() {
     ///     tiles.set(tile, [DepthInterval::new(5.0, 20.0)?]);
     /// }
     /// let mut batch = LightBatch::new();
     /// let sphere = Sphere::new(Vec3::new(0.0, 0.0, -10.0), 1.0)?;
-    /// batch.extend(CameraSphere::new(&sphere, &camera).map(|shape| (7, shape)));
+    /// batch.extend(sphere.project(&camera).map(|shape| (7, shape)));
     ///
     /// let (mut culler, [mut many, mut one]) = (Culler::new(), [LightLists::new(), LightLists::new()]);
     /// culler.cull_in_parallel(&batch, &tiles, &mut many)?;
@@ -55,7 +53,7 @@ impl<T: BatchShape + Send + Sync> Culler<T> {
     /// As [`cull`](Self::cull).
     pub fn cull_in_parallel(
         &mut self,
-        batch: &LightBatch<T>,
+        batch: &LightBatch<P>,
         tiles: &TileDepths,
         lists: &mut LightLists,
     ) -> Result<CullCounters, Error> {
@@ -104,8 +102,8 @@ impl<T: BatchShape + Send + Sync> Culler<T> {
     }
 }
 
-impl<T: BatchShape> Worker<T> {
-    fn cull(&mut self, level: Level, batch: &LightBatch<T>, tiles: &TileDepths) {
+impl<P: BoxTest> Worker<P> {
+    fn cull(&mut self, level: Level, batch: &LightBatch<P>, tiles: &TileDepths) {
         let Self {
             area,
             scratch,

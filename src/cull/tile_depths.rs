@@ -1,6 +1,8 @@
 use alloc::vec::Vec;
 
-use crate::{DepthInterval, Error, TileRectangle};
+use crate::base::Error;
+use crate::touch::TileBounds;
+use crate::view::{Camera, DepthInterval, TileGrid, TileRectangle};
 
 /// A grid of tiles and the depths that each of them sees, in one interval or in several.
 ///
@@ -14,9 +16,7 @@ use crate::{DepthInterval, Error, TileRectangle};
 ///
 /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.5, 0.1..100.0)?;
 /// let grid = TileGrid::new([96, 64], 16)?;
-/// let mut tiles = TileDepths::new(grid.size(), 2, |tile| {
-///     camera.tile_rectangle([96, 64], grid.pixels(tile))
-/// })?;
+/// let mut tiles = TileDepths::new(&grid, &camera, 2)?;
 /// for tile in grid.tiles() {
 ///     let depths = grid.pixels(tile).pixels().map(|[x, y]| (x + y) as f32); // of a depth buffer
 ///     tiles.set(tile, DepthInterval::modified_half_z(depths));
@@ -37,44 +37,110 @@ pub struct TileDepths {
     around: Vec<[f32; 2]>,
 }
 
+/// Tiles in a row or a column.
+const MOST_IN_A_ROW: u32 = 1 << 16;
+/// Depth intervals of all tiles together: within what a vector can hold where pointers have 32 bits.
+const MOST_SLOTS: u64 = 1 << 27;
+
 /// No interval: it ends before it begins.
 pub(super) const NONE: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
 impl TileDepths {
-    /// A grid of `size` = \[columns, rows\] tiles, each with room for `intervals` depth intervals, all of
+    /// The tiles of `grid` that `camera` sees, each with room for `intervals` depth intervals, all of
     /// which are missing at first.
-    ///
-    /// `rectangle` says what a tile covers. Only the tiles of the first row and of the first column are
-    /// asked for: those of a column share their slopes across, those of a row their slopes down.
     ///
     /// # Errors
     ///
-    /// [`Error::Size`] if there are no tiles or no intervals, or more of both together than a `u32`
-    /// counts.
-    pub fn new(
+    /// [`Error::Size`] if there are no intervals, more than 2¹⁶ tiles in a row or a column, or more than 2²⁷
+    /// intervals in all tiles together. That many take 2 GiB at most.
+    pub fn new(grid: &TileGrid, camera: &Camera, intervals: u32) -> Result<Self, Error> {
+        Self::from_rectangles(grid.size(), intervals, |tile| camera.tile(grid, tile))
+    }
+
+    /// A grid of `size` = \[columns, rows\] tiles of which `rectangle` says what they cover.
+    ///
+    /// Only the tiles of the first row and of the first column are asked for: those of a column share their
+    /// slopes across, those of a row their slopes down.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Size`] if there are no tiles or no intervals, or more than [`new`](Self::new) takes.
+    pub fn from_rectangles(
         size: [u32; 2],
         intervals: u32,
         rectangle: impl Fn([u32; 2]) -> TileRectangle,
     ) -> Result<Self, Error> {
-        // Of two they fit, but not of three.
-        let slots = (u64::from(size[0]) * u64::from(size[1])).saturating_mul(intervals.into());
-        if slots == 0 || slots > u64::from(u32::MAX) {
+        let mut tiles = Self {
+            intervals: intervals as usize,
+            columns: Vec::new(),
+            rows: Vec::new(),
+            depths: Vec::new(),
+            around: Vec::new(),
+        };
+        tiles.set_rectangles(size, rectangle)?;
+        Ok(tiles)
+    }
+
+    /// Renews the tiles for a frame with another grid or camera: jitter, zoom, dynamic resolution. All depth
+    /// intervals are missing afterwards. Allocates nothing unless there are more tiles than ever before.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new); the tiles are then unchanged.
+    pub fn set_view(&mut self, grid: &TileGrid, camera: &Camera) -> Result<(), Error> {
+        self.set_rectangles(grid.size(), |tile| camera.tile(grid, tile))
+    }
+
+    /// [`set_view`](Self::set_view) for tiles of which `rectangle` says what they cover, as
+    /// [`from_rectangles`](Self::from_rectangles) has it.
+    ///
+    /// # Errors
+    ///
+    /// As [`from_rectangles`](Self::from_rectangles); the tiles are then unchanged.
+    pub fn set_rectangles(
+        &mut self,
+        size: [u32; 2],
+        rectangle: impl Fn([u32; 2]) -> TileRectangle,
+    ) -> Result<(), Error> {
+        let tiles = u64::from(size[0]) * u64::from(size[1]);
+        // The product of two fits, but not of three.
+        let slots = tiles.saturating_mul(self.intervals as u64);
+        if slots == 0 || slots > MOST_SLOTS || size[0].max(size[1]) > MOST_IN_A_ROW {
             return Err(Error::Size {
                 quantity: "grid of tiles",
                 value: size,
-                valid: "at least 1×1, and with its depth intervals less than 2³²",
+                valid: "at least 1×1 and at most 65536×65536, with 1 to 2²⁷ depth intervals in all",
             });
         }
         let columns = (0..size[0]).map(|x| rectangle([x, 0]));
         let rows = (0..size[1]).map(|y| rectangle([0, y]));
-        let tiles = slots as usize / intervals as usize;
-        Ok(Self {
-            intervals: intervals as usize,
-            columns: columns.map(|tile| [tile.min().x, tile.max().x]).collect(),
-            rows: rows.map(|tile| [tile.min().y, tile.max().y]).collect(),
-            depths: alloc::vec![NONE; slots as usize],
-            around: alloc::vec![NONE; tiles],
-        })
+        self.columns.clear();
+        self.columns
+            .extend(columns.map(|tile| [tile.min().x, tile.max().x]));
+        self.rows.clear();
+        self.rows
+            .extend(rows.map(|tile| [tile.min().y, tile.max().y]));
+        self.depths.clear();
+        self.depths.resize(slots as usize, NONE);
+        self.around.clear();
+        self.around.resize(tiles as usize, NONE);
+        Ok(())
+    }
+
+    /// From the least to the greatest slope x/z of each column.
+    pub fn columns(&self) -> &[[f32; 2]] {
+        &self.columns
+    }
+
+    /// From the least to the greatest slope y/z of each row.
+    pub fn rows(&self) -> &[[f32; 2]] {
+        &self.rows
+    }
+
+    /// The near and far depth of each interval of each tile, in the order of
+    /// [`LightLists::ranges`](crate::LightLists::ranges); \[∞, −∞\] of one that is missing.
+    pub fn depths(&self) -> &[[f32; 2]] {
+        &self.depths
     }
 
     /// How many tiles there are, across and down.
@@ -118,7 +184,7 @@ impl TileDepths {
     /// If there is no such tile.
     pub fn interval_of(&self, tile: [u32; 2], depth: f32) -> Option<u32> {
         let [x, y] = self.index_of(tile);
-        let mut intervals = self.depths(x, y).iter();
+        let mut intervals = self.depths_of(x, y).iter();
         let holds = |[near, far]: &[f32; 2]| (*near..=*far).contains(&depth);
         intervals.position(holds).map(|interval| interval as u32)
     }
@@ -154,14 +220,14 @@ impl TileDepths {
     }
 
     /// The depth intervals of the tile at column `x` and row `y`.
-    pub(super) fn depths(&self, x: usize, y: usize) -> &[[f32; 2]] {
+    pub(super) fn depths_of(&self, x: usize, y: usize) -> &[[f32; 2]] {
         let first = (y * self.columns.len() + x) * self.intervals;
         &self.depths[first..][..self.intervals]
     }
 
     /// The slopes across and down, and the depths, that hold those of all tiles of `area`, if there are
     /// any depths.
-    pub(super) fn around(&self, area: Area) -> Option<[[f32; 2]; 3]> {
+    pub(super) fn around(&self, area: Area) -> Option<TileBounds<f32>> {
         let [columns, rows] = [0, 1].map(|i| area.min[i]..area.max[i]);
         let mut depths = NONE;
         for y in rows.clone() {
@@ -171,7 +237,11 @@ impl TileDepths {
         }
         let across = self.columns[columns].iter().copied();
         let down = self.rows[rows].iter().copied();
-        (depths != NONE).then(|| [across.fold(NONE, joined), down.fold(NONE, joined), depths])
+        (depths != NONE).then(|| TileBounds {
+            across: across.fold(NONE, joined),
+            down: down.fold(NONE, joined),
+            depths,
+        })
     }
 }
 

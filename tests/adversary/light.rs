@@ -5,14 +5,14 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use fastrand::Rng;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Conductor, ConstantLobe, Dielectric, Direction,
-    Ggx, GgxLobe, LambertLobe, MaskingShadowing, NoFresnel, PhongLobe, Roulette, Schlick, Vpl, Xi,
-    glam::Vec3,
+    Ggx, GgxLobe, Incidence, LambertLobe, MaskingShadowing, NoFresnel, Paper, PhongLobe, Roulette,
+    Schlick, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 use twofloat::TwoFloat as Real;
 
 use super::{Bound, chance, direction, log_uniform, unit_vector, up_to_one};
 use crate::reference::exact::{Exact, value};
-use crate::reference::{Brdf, Fresnel, GivenFresnel, Masking, Vector};
+use crate::reference::{Brdf, Fresnel, GivenFresnel, MaskedAlone, Masking, Vector};
 
 /// A light in one frame.
 #[derive(Clone, Copy, Debug)]
@@ -186,12 +186,19 @@ impl Light {
                 let (roulette, xi) = self.roulette();
                 Bound::Lambert {
                     sphere: light.bound(&roulette, xi),
-                    tight: light.tight_bound(&roulette, xi),
+                    tight: light.bound_by(Tight, &roulette, xi),
                 }
             }
             Brdf::Phong { albedo, exponent } => {
-                let lobe = PhongLobe::new(albedo, exponent, self.normal, self.incoming)
-                    .expect("in the domain");
+                let lobe = PhongLobe::new(
+                    albedo,
+                    exponent,
+                    Incidence {
+                        normal: self.normal,
+                        incoming: self.incoming,
+                    },
+                )
+                .expect("in the domain");
                 Bound::Phong(self.bound_of(lobe))
             }
             Brdf::Anisotropic {
@@ -203,12 +210,20 @@ impl Light {
                 let [along, across] = roughness;
                 let ggx = AnisotropicGgx::new(along, across).expect("in the domain");
                 let fresnel = GivenFresnel::try_from(fresnel).expect("in the domain");
-                let lobe =
-                    AnisotropicGgxLobe::new(ggx, fresnel, self.normal, tangent, self.incoming)
-                        .expect("laid on the surface");
+                let lobe = AnisotropicGgxLobe::new(
+                    ggx,
+                    fresnel,
+                    Incidence {
+                        normal: self.normal,
+                        incoming: self.incoming,
+                    },
+                    tangent,
+                )
+                .expect("laid on the surface");
                 Bound::Anisotropic(match masking {
                     Masking::HeightCorrelated => self.bound_of(lobe),
                     Masking::Separable => self.bound_of(lobe.separable()),
+                    Masking::MaskedAlone => self.bound_of(lobe.with_masking::<MaskedAlone>()),
                 })
             }
             Brdf::Ggx {
@@ -243,10 +258,18 @@ impl Light {
     where
         F: stochastic_light_culling::Fresnel,
     {
-        let lobe = GgxLobe::new(ggx, fresnel, self.normal, self.incoming);
+        let lobe = GgxLobe::new(
+            ggx,
+            fresnel,
+            Incidence {
+                normal: self.normal,
+                incoming: self.incoming,
+            },
+        );
         match masking {
             Masking::HeightCorrelated => self.both_bounds_of(lobe),
             Masking::Separable => self.both_bounds_of(lobe.separable()),
+            Masking::MaskedAlone => self.both_bounds_of(lobe.with_masking::<MaskedAlone>()),
         }
     }
 
@@ -258,13 +281,13 @@ impl Light {
         let (roulette, xi) = self.roulette();
         let light = Vpl::new(self.position, self.flux, lobe).expect("in the domain");
         Bound::Ggx {
-            spheroid: light.bound(&roulette, xi),
-            triaxial: light.triaxial_bound(&roulette, xi),
-            tight: light.tight_bound(&roulette, xi),
+            spheroid: light.bound_by(Paper, &roulette, xi),
+            triaxial: light.bound_by(Triaxial, &roulette, xi),
+            tight: light.bound_by(Tight, &roulette, xi),
         }
     }
 
-    fn bound_of<L: Bounded>(&self, lobe: L) -> L::Bound {
+    fn bound_of<L: Bounded>(&self, lobe: L) -> L::Shape {
         let (roulette, xi) = self.roulette();
         let light = Vpl::new(self.position, self.flux, lobe).expect("in the domain");
         light.bound(&roulette, xi)
@@ -293,10 +316,10 @@ fn two_roughnesses(rng: &mut Rng) -> [f32; 2] {
 }
 
 fn masking(rng: &mut Rng) -> Masking {
-    if rng.bool() {
-        Masking::HeightCorrelated
-    } else {
-        Masking::Separable
+    match rng.u8(0..5) {
+        0 | 1 => Masking::HeightCorrelated,
+        2 | 3 => Masking::Separable,
+        _ => Masking::MaskedAlone,
     }
 }
 

@@ -9,9 +9,7 @@ pub use light::{Light, fresnel};
 pub use tile::Tile;
 
 use fastrand::Rng;
-use stochastic_light_culling::{
-    CameraSphere, Direction, Ellipsoid, Sphere, Spheroid, Stretch, TileTest,
-};
+use stochastic_light_culling::{Direction, Ellipsoid, Sphere, Spheroid, TileTest};
 
 use crate::reference::Vector;
 
@@ -47,10 +45,14 @@ impl Bound {
 
     fn that_fail(&self, tile: &Tile, touches: impl Fn(&dyn TileTest) -> bool) -> Vec<&'static str> {
         let sphere = |sphere: Sphere| {
-            CameraSphere::new(&sphere, &tile.camera).is_some_and(|test| touches(&test))
+            sphere
+                .project(&tile.camera)
+                .is_some_and(|test| touches(&test))
         };
         let ellipsoid = |ellipsoid: Ellipsoid| {
-            Stretch::new(&ellipsoid, &tile.camera).is_some_and(|test| touches(&test))
+            ellipsoid
+                .project(&tile.camera)
+                .is_some_and(|test| touches(&test))
         };
         let found = match *self {
             Self::Sphere(bound) => vec![("sphere", sphere(bound))],

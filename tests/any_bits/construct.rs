@@ -4,17 +4,17 @@ use std::hint::black_box;
 
 use fastrand::Rng;
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, Bound, Bounded, Camera, Conductor, ConstantLobe,
-    DepthInterval, Dielectric, Direction, Ellipsoid, Fresnel, FresnelMajorant, Ggx, GgxLobe,
-    Interleave, LambertLobe, Lobe, NoFresnel, PhongLobe, PixelRectangle, Proxy, Roulette, Schlick,
-    Sphere, Stretch, TileGrid, TileRectangle, TileTest, Vpl, Xi,
+    AnisotropicGgx, AnisotropicGgxLobe, Bounded, Camera, Conductor, ConstantLobe, DepthInterval,
+    Dielectric, Direction, Ellipsoid, FrameSeed, Fresnel, FresnelMajorant, Ggx, GgxLobe, Incidence,
+    Interleave, LambertLobe, Lobe, NoFresnel, Paper, PhongLobe, PixelRectangle, Proxy, Roulette,
+    Schlick, Shape, Sphere, Tight, TileGrid, TileRectangle, Triaxial, Vpl, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
 
 use crate::adversary::{Light, Tile};
 use crate::bits::Bits;
 use crate::culling;
-use crate::probe::{self, Shape};
+use crate::probe::{self, Probed};
 use crate::reference::{self, Brdf, Masking, Vector};
 
 pub fn everything(bits: &mut Bits) {
@@ -46,24 +46,35 @@ fn glossy(bits: &mut Bits, cameras: &[Camera]) {
     };
     let tag = bits.byte();
     if let Ok(schlick) = Schlick::new(bits.number()) {
-        let lobe = GgxLobe::new(ggx, schlick, normal, incoming);
+        let lobe = GgxLobe::new(ggx, schlick, Incidence { normal, incoming });
         probe::ggx_lobe(&lobe, cameras);
         probe::ggx_lobe(&lobe.separable(), cameras);
     }
     if tag < 64 {
-        probe::ggx_lobe(&GgxLobe::new(ggx, NoFresnel, normal, incoming), cameras);
+        probe::ggx_lobe(
+            &GgxLobe::new(ggx, NoFresnel, Incidence { normal, incoming }),
+            cameras,
+        );
     }
     if let Ok(dielectric) = Dielectric::new(bits.number()) {
-        probe::ggx_lobe(&GgxLobe::new(ggx, dielectric, normal, incoming), cameras);
+        probe::ggx_lobe(
+            &GgxLobe::new(ggx, dielectric, Incidence { normal, incoming }),
+            cameras,
+        );
     }
     if let Ok(conductor) = Conductor::new(bits.number(), bits.number()) {
-        probe::ggx_lobe(&GgxLobe::new(ggx, conductor, normal, incoming), cameras);
+        probe::ggx_lobe(
+            &GgxLobe::new(ggx, conductor, Incidence { normal, incoming }),
+            cameras,
+        );
     }
     if let (Ok(grain), Ok(tangent)) = (
         AnisotropicGgx::new(ggx.roughness(), bits.number()),
         Direction::new(bits.vector()),
     ) {
-        if let Ok(lobe) = AnisotropicGgxLobe::new(grain, NoFresnel, normal, tangent, incoming) {
+        if let Ok(lobe) =
+            AnisotropicGgxLobe::new(grain, NoFresnel, Incidence { normal, incoming }, tangent)
+        {
             probe::grained_lobe(&lobe, cameras);
         }
     }
@@ -123,7 +134,7 @@ fn others(bits: &mut Bits, cameras: &[Camera]) {
     if let Some([normal, incoming]) = directions(bits) {
         let [albedo, exponent] = [(); 2].map(|()| bits.number());
         for lobe in [
-            PhongLobe::new(albedo, exponent, normal, incoming),
+            PhongLobe::new(albedo, exponent, Incidence { normal, incoming }),
             PhongLobe::about(albedo, exponent, normal),
         ]
         .into_iter()
@@ -136,7 +147,14 @@ fn others(bits: &mut Bits, cameras: &[Camera]) {
     }
     if let (Ok(roulette), Ok(xi)) = (Roulette::new(bits.number()), Xi::new(bits.number())) {
         probe::roulette(&roulette, xi);
-        probe::roulette(&roulette, Xi::hashed(bits.word(), bits.word(), bits.word()));
+        probe::roulette(
+            &roulette,
+            FrameSeed {
+                frame: bits.word(),
+                seed: bits.word(),
+            }
+            .xi(bits.word()),
+        );
     }
     if let Ok(light) = Vpl::new(bits.vector(), bits.number(), ConstantLobe) {
         assert!(!light.radiant_intensity(Vec3::Z).is_nan());
@@ -178,22 +196,23 @@ fn foreign(bits: &mut Bits, cameras: &[Camera]) {
     let (Ok(ggx), Some([normal, incoming])) = (Ggx::new(bits.number()), directions(bits)) else {
         return;
     };
-    let lobe = GgxLobe::new(ggx, wild, normal, incoming);
+    let lobe = GgxLobe::new(ggx, wild, Incidence { normal, incoming });
     black_box((
         lobe.value(*normal),
         lobe.extent(incoming),
         lobe.max_reflected(),
     ));
     let (place, scale) = (bits.vector(), bits.number());
-    let placed = lobe.unit_bound().placed(place, scale);
+    let placed = lobe.unit_bound_by(Paper).placed(place, scale);
     black_box((placed.enclosing_sphere(), placed.sphere_at_focus()));
-    let bounds = [lobe.tight_bound(), lobe.triaxial_bound(), placed.into()];
+    let bounds = [
+        lobe.unit_bound_by(Tight),
+        lobe.unit_bound_by(Triaxial),
+        placed.into(),
+    ];
     for bound in bounds.map(|bound| bound.placed(place, scale)) {
         black_box(Proxy::Icosphere.vertices(&bound).last());
-        for stretch in cameras
-            .iter()
-            .filter_map(|camera| Stretch::new(&bound, camera))
-        {
+        for stretch in cameras.iter().filter_map(|camera| bound.project(camera)) {
             let tile = TileRectangle::new(bits.pair(), bits.pair());
             let depths = DepthInterval::new(bits.number(), bits.number());
             if let (Ok(tile), Ok(depths)) = (tile, depths) {
@@ -272,7 +291,16 @@ pub fn light_in_domain(bits: &mut Bits) {
         5 => {
             // As the exact model needs it.
             let exponent = (16.0 * bits.number()).round() / 16.0;
-            if PhongLobe::new(albedo, exponent, Direction::Z, Direction::Z).is_err() {
+            if PhongLobe::new(
+                albedo,
+                exponent,
+                Incidence {
+                    normal: Direction::Z,
+                    incoming: Direction::Z,
+                },
+            )
+            .is_err()
+            {
                 return;
             }
             Brdf::Phong { albedo, exponent }

@@ -4,9 +4,9 @@
 use std::fmt::Debug;
 
 use stochastic_light_culling::{
-    BatchBound, BatchBuilder, BatchLobe, BatchShape, Camera, CameraSphere, Culler, DepthInterval,
-    DepthOrder, Direction, Ellipsoid, Ggx, GgxLobe, LambertLobe, LightBatch, LightLists, NoFresnel,
-    Roulette, Sphere, Stretch, TileDepths, TileGrid, TileRectangle, Vpl, Xi, glam::Mat3,
+    BatchBuilder, Bounded, BoxTest, Camera, Culler, DepthInterval, DepthOrder, Direction,
+    Ellipsoid, FrameSeed, Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, NoFresnel,
+    Project, Roulette, Sphere, TileDepths, TileGrid, TileRectangle, Vpl, Xi, glam::Mat3,
 };
 
 use crate::bits::Bits;
@@ -19,32 +19,30 @@ pub fn everything(bits: &mut Bits, cameras: &[Camera]) {
     let Some(grid) = Grid::new(bits, camera) else {
         return;
     };
-    let stretch = |bound: Ellipsoid| Stretch::new(&bound, camera);
-    let sphere = |bound: Sphere| CameraSphere::new(&bound, camera);
     match bits.byte() % 4 {
         0 => {
             let shape = Ellipsoid::new(bits.vector(), Mat3::IDENTITY, bits.vector());
             if let Ok(shape) = shape {
-                grid.lists_bounds(bits, shape, stretch);
+                grid.lists_bounds(bits, shape);
             }
         }
         1 => {
             if let Ok(shape) = Sphere::new(bits.vector(), bits.number()) {
-                grid.lists_bounds(bits, shape, sphere);
+                grid.lists_bounds(bits, shape);
             }
         }
         2 => {
             let [normal, incoming] = [(); 2].map(|()| Direction::new(bits.vector()));
             if let (Ok(normal), Ok(incoming), Ok(ggx)) = (normal, incoming, Ggx::new(bits.number()))
             {
-                let lobe = GgxLobe::new(ggx, NoFresnel, normal, incoming);
-                grid.lists_lights(bits, lobe, |bound| stretch(bound.into()));
+                let lobe = GgxLobe::new(ggx, NoFresnel, Incidence { normal, incoming });
+                grid.lists_lights(bits, lobe);
             }
         }
         _ => {
             let (albedo, normal) = (bits.number(), Direction::new(bits.vector()));
             if let Ok(lobe) = normal.and_then(|normal| LambertLobe::new(albedo, normal)) {
-                grid.lists_lights(bits, lobe, sphere);
+                grid.lists_lights(bits, lobe);
             }
         }
     }
@@ -59,14 +57,14 @@ fn order(bits: &mut Bits, camera: &Camera) {
     assert_eq!(order, [0, 1, 2, 3, 4]);
 }
 
-/// More tiles than can be counted, or none: refused before anything is allocated or asked for.
+/// More tiles than there may be, or none: refused before anything is allocated or asked for.
 fn refused_grids(bits: &mut Bits) {
     let (size, intervals) = ([bits.size(), bits.size()], bits.size());
     let [columns, rows, slices] = [size[0], size[1], intervals].map(u128::from);
     let slots = columns * rows * slices;
-    if slots == 0 || slots > u128::from(u32::MAX) {
+    if slots == 0 || slots > 1 << 27 || columns.max(rows) > 1 << 16 {
         let never = |_| -> TileRectangle { unreachable!("there is no such tile") };
-        assert!(TileDepths::new(size, intervals, never).is_err());
+        assert!(TileDepths::from_rectangles(size, intervals, never).is_err());
     }
 }
 
@@ -84,7 +82,7 @@ impl<'a> Grid<'a> {
         let grid = TileGrid::new(image, 1 + u32::from(bits.byte()) % 3).ok()?;
         let rectangle = |tile| camera.tile_rectangle(image, grid.pixels(tile));
         let intervals = 1 + u32::from(bits.byte()) % 3;
-        let mut tiles = TileDepths::new(grid.size(), intervals, rectangle).ok()?;
+        let mut tiles = TileDepths::from_rectangles(grid.size(), intervals, rectangle).ok()?;
         let few = [(); 4].map(|()| bits.number());
         let mut seen = Vec::new();
         for (tile, which) in grid.tiles().zip(0_usize..) {
@@ -114,9 +112,9 @@ impl<'a> Grid<'a> {
     }
 
     /// Copies of a bound from nowhere to everywhere.
-    fn lists_bounds<B>(&self, bits: &mut Bits, bound: B, shape: impl Fn(B) -> Option<B::Shape>)
+    fn lists_bounds<B>(&self, bits: &mut Bits, bound: B)
     where
-        B: BatchBound<Shape: PartialEq + Debug>,
+        B: Project<Projected: BoxTest + PartialEq + Debug> + 'static,
     {
         let places = PLACES.into_iter();
         let places = places.flat_map(|place| SCALES.map(|scale| (place, scale)));
@@ -125,21 +123,17 @@ impl<'a> Grid<'a> {
         let mut batch = LightBatch::new();
         let roulette = roulette(bits);
         builder(bits, &roulette, self.camera).add_placed(given, &mut batch);
-        let shapes = places.map(|(place, scale)| shape(bound.placed(place, scale)));
+        let shapes = places.map(|(place, scale)| bound.placed(place, scale).project(self.camera));
         self.lists(bits, &batch, shapes);
     }
 
     /// Lights from the dimmest to the brightest.
-    fn lists_lights<L>(
-        &self,
-        bits: &mut Bits,
-        lobe: L,
-        shape: impl Fn(L::Bound) -> Option<L::Shape>,
-    ) where
-        L: BatchLobe<Shape: PartialEq + Debug>,
+    fn lists_lights<L>(&self, bits: &mut Bits, lobe: L)
+    where
+        L: Bounded<Shape: Project<Projected: BoxTest + PartialEq + Debug>> + Copy + 'static,
     {
         let (roulette, xi) = (roulette(bits), Xi::new(bits.number()));
-        let xi = xi.unwrap_or(Xi::hashed(1, 2, 3));
+        let xi = xi.unwrap_or(FrameSeed { frame: 2, seed: 3 }.xi(1));
         let places = PLACES.into_iter();
         let lights: Vec<_> = places
             .flat_map(|place| [0.0, 1e-45, 1.0, f32::MAX].map(|flux| (place, flux)))
@@ -150,7 +144,7 @@ impl<'a> Grid<'a> {
         let mut batch = LightBatch::new();
         builder(bits, &roulette, self.camera).add(given, &mut batch);
         let shapes = lights.iter();
-        let shapes = shapes.map(|light| shape(light.bound(&roulette, xi)));
+        let shapes = shapes.map(|light| light.bound(&roulette, xi).project(self.camera));
         self.lists(bits, &batch, shapes);
     }
 
@@ -161,7 +155,7 @@ impl<'a> Grid<'a> {
         batch: &LightBatch<T>,
         shapes: impl Iterator<Item = Option<T>>,
     ) where
-        T: BatchShape + PartialEq + Debug,
+        T: BoxTest + PartialEq + Debug,
     {
         let shapes: Vec<(u32, T)> = (0..)
             .zip(shapes)

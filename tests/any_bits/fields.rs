@@ -2,13 +2,13 @@
 
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, DepthInterval, Dielectric,
-    Direction, Ellipsoid, Error, Ggx, GgxLobe, LambertLobe, NoFresnel, Roulette, Schlick, Sphere,
-    TileRectangle, Vpl, Xi,
+    Direction, Ellipsoid, Error, Ggx, GgxLobe, Incidence, LambertLobe, NoFresnel, Roulette,
+    Schlick, Sphere, TileRectangle, Vpl, Xi,
     glam::{Mat3, Mat4, Vec2, Vec3},
 };
 
 use crate::bits::SPECIAL;
-use crate::probe::{self, Shape};
+use crate::probe::{self, Probed};
 
 /// `construct` from `valid`, and from that with each number in turn replaced by each special one: it
 /// gives an error of one line, or something that passes `probe`.
@@ -40,7 +40,16 @@ fn ignore<T>(_: &T) {}
 fn of_lobes() {
     let cameras = [usual()];
     let incoming = Direction::new(Vec3::new(0.3, 0.2, 0.9)).expect("not zero");
-    let lobe = |ggx| GgxLobe::new(ggx, NoFresnel, Direction::Z, incoming);
+    let lobe = |ggx| {
+        GgxLobe::new(
+            ggx,
+            NoFresnel,
+            Incidence {
+                normal: Direction::Z,
+                incoming,
+            },
+        )
+    };
     each_field(
         [0.1],
         |[alpha]| Ggx::new(alpha),
@@ -51,7 +60,15 @@ fn of_lobes() {
         |[along, across, x, y, z]| {
             let grain = AnisotropicGgx::new(along, across)?;
             let tangent = Direction::new(Vec3::new(x, y, z))?;
-            AnisotropicGgxLobe::new(grain, NoFresnel, Direction::Z, tangent, incoming)
+            AnisotropicGgxLobe::new(
+                grain,
+                NoFresnel,
+                Incidence {
+                    normal: Direction::Z,
+                    incoming,
+                },
+                tangent,
+            )
         },
         |lobe| probe::grained_lobe(lobe, &cameras),
     );
@@ -72,11 +89,25 @@ fn of_lobes() {
         probe::direction(*direction);
         let ggx = Ggx::new(0.01).expect("valid");
         probe::ggx_lobe(
-            &GgxLobe::new(ggx, NoFresnel, *direction, incoming),
+            &GgxLobe::new(
+                ggx,
+                NoFresnel,
+                Incidence {
+                    normal: *direction,
+                    incoming,
+                },
+            ),
             &cameras,
         );
         probe::ggx_lobe(
-            &GgxLobe::new(ggx, NoFresnel, incoming, *direction),
+            &GgxLobe::new(
+                ggx,
+                NoFresnel,
+                Incidence {
+                    normal: incoming,
+                    incoming: *direction,
+                },
+            ),
             &cameras,
         );
     });

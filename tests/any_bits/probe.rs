@@ -3,9 +3,9 @@
 use std::hint::black_box;
 
 use stochastic_light_culling::{
-    AnisotropicGgxLobe, Bound, Bounded, Camera, CameraSphere, DepthInterval, Direction, Ellipsoid,
-    Fresnel, GgxLobe, GpuSphere, GpuStretch, HalfSpace, LambertLobe, Lobe, MaskingShadowing,
-    PixelRectangle, Proxy, Roulette, Sphere, Spheroid, Stretch, TileRectangle, TileTest, Vpl, Xi,
+    AnisotropicGgxLobe, Bounded, Camera, DepthInterval, Direction, Ellipsoid, Fresnel, GgxLobe,
+    GpuEllipsoid, GpuSphere, HalfSpace, LambertLobe, Lobe, MaskingShadowing, PixelRectangle, Proxy,
+    Roulette, Shape, Sphere, Spheroid, Tight, TileRectangle, TileTest, Triaxial, Vpl, Xi,
     glam::{Mat3, Vec2, Vec3},
     stretch_matrix, stretch_rotation,
 };
@@ -37,16 +37,16 @@ fn matrix(m: Mat3) {
 }
 
 /// What a lobe's bound is, and how to look into it.
-pub trait Shape: Bound + std::fmt::Debug {
+pub trait Probed: Shape + std::fmt::Debug {
     fn probe(&self, cameras: &[Camera]);
 }
 
-impl Shape for Sphere {
+impl Probed for Sphere {
     fn probe(&self, cameras: &[Camera]) {
         vector(self.center());
         number(self.radius());
         for camera in cameras {
-            if let Some(test) = CameraSphere::new(self, camera) {
+            if let Some(test) = self.project(camera) {
                 vector(test.center());
                 number(test.radius_squared());
                 black_box(bytemuck::bytes_of(&GpuSphere::from(&test)));
@@ -56,13 +56,13 @@ impl Shape for Sphere {
     }
 }
 
-impl Shape for Ellipsoid {
+impl Probed for Ellipsoid {
     fn probe(&self, cameras: &[Camera]) {
         ellipsoid(self, cameras);
     }
 }
 
-impl Shape for Spheroid {
+impl Probed for Spheroid {
     fn probe(&self, cameras: &[Camera]) {
         vector(self.focus());
         direction(self.axis());
@@ -84,10 +84,10 @@ pub fn ellipsoid(ellipsoid: &Ellipsoid, cameras: &[Camera]) {
             .for_each(|vertex| assert!(vertex.is_finite(), "{vertex}"));
     }
     for camera in cameras {
-        if let Some(test) = Stretch::new(ellipsoid, camera) {
+        if let Some(test) = ellipsoid.project(camera) {
             matrix(test.matrix());
             vector(test.center());
-            black_box(bytemuck::bytes_of(&GpuStretch::new(&test, 7)));
+            black_box(bytemuck::bytes_of(&GpuEllipsoid::new(&test, 7)));
             touching(&test, camera);
         }
         black_box(stretch_rotation(stretch_matrix(ellipsoid, camera)));
@@ -102,7 +102,7 @@ fn touching(test: &impl TileTest, camera: &Camera) {
     };
     let rectangles = [
         Some(camera.tile_rectangle(IMAGE, all)),
-        TileRectangle::new(Vec2::MIN, Vec2::MAX).ok(),
+        TileRectangle::new(Vec2::splat(-1e6), Vec2::splat(1e6)).ok(),
         TileRectangle::new(Vec2::splat(1e-45), Vec2::splat(1e-45)).ok(),
     ];
     let depths = [(0.0, 0.0), (0.0, f32::MAX), (1e-45, 1e-45), (1.0, 2.0)];
@@ -160,17 +160,17 @@ where
     let away = *lobe.mirror_direction();
     values(lobe, &[away, -away]);
     light(*lobe, cameras);
-    ellipsoid(&lobe.triaxial_bound(), cameras);
-    everywhere(&lobe.tight_bound(), cameras);
+    ellipsoid(&lobe.unit_bound_by(Triaxial), cameras);
+    everywhere(&lobe.unit_bound_by(Tight), cameras);
 }
 
 pub fn lambert_lobe(lobe: &LambertLobe, cameras: &[Camera]) {
     saved(lobe);
     light(*lobe, cameras);
-    everywhere(&lobe.tight_bound(), cameras);
+    everywhere(&lobe.unit_bound_by(Tight), cameras);
 }
 
-fn everywhere(bound: &impl Shape, cameras: &[Camera]) {
+fn everywhere(bound: &impl Probed, cameras: &[Camera]) {
     bound.probe(cameras);
     for position in PLACES {
         for scale in SCALES {
@@ -196,7 +196,7 @@ where
 }
 
 /// A lobe's light, from the dimmest to the brightest.
-pub fn light<L: Bounded<Bound: Shape> + std::fmt::Debug + Copy>(lobe: L, cameras: &[Camera]) {
+pub fn light<L: Bounded<Shape: Probed> + std::fmt::Debug + Copy>(lobe: L, cameras: &[Camera]) {
     values(&lobe, &[]);
     everywhere(&lobe.unit_bound(), cameras);
     for position in PLACES {
@@ -237,7 +237,12 @@ pub fn roulette(roulette: &Roulette, xi: Xi) {
 pub fn camera(camera: &Camera) {
     saved(camera);
     for position in PLACES {
-        touching(&HalfSpace::new(position, Direction::Z, camera), camera);
+        touching(
+            &HalfSpace::new(position, Direction::Z)
+                .unwrap()
+                .project(camera),
+            camera,
+        );
     }
     matrix(camera.rotation());
     for point in PLACES {

@@ -4,18 +4,36 @@
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 /// Runs the example that `cargo test` has built beside this test's own executable. With `--test`
 /// cargo leaves it out, and it must be built before: `cargo build --profile test --examples`.
 pub fn run<S: AsRef<OsStr>>(example: &str, arguments: impl IntoIterator<Item = S>) -> Output {
+    command(example, arguments).output().expect(BUILT)
+}
+
+const BUILT: &str = "first run `cargo build --profile test --examples`, or all of `cargo test`";
+
+fn command<S: AsRef<OsStr>>(example: &str, arguments: impl IntoIterator<Item = S>) -> Command {
     let test = std::env::current_exe().expect("a test knows where it is");
     let profile = test.ancestors().nth(2).expect("tests lie in deps/");
     let name = format!("{example}{}", std::env::consts::EXE_SUFFIX);
-    Command::new(profile.join("examples").join(name))
-        .args(arguments)
-        .output()
-        .expect("first run `cargo build --profile test --examples`, or all of `cargo test`")
+    let mut command = Command::new(profile.join("examples").join(name));
+    command.args(arguments);
+    command
+}
+
+/// Asserts that an example is content if nobody reads what it prints.
+#[track_caller]
+pub fn assert_needs_no_reader(example: &str, arguments: &[&str]) {
+    let mut command = command(example, arguments);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect(BUILT);
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("it ends");
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{error}");
+    assert!(error.is_empty(), "{example} {arguments:?}: {error}");
 }
 
 /// A path for this test alone, with nothing there.

@@ -14,7 +14,7 @@ pub struct OtherLobe {
 }
 
 impl OtherLobe {
-    fn new<L: Bounded<Bound: Into<Shape>>>(
+    fn new<L: Bounded<Shape: Into<Shape>>>(
         name: &'static str,
         lobe: &L,
         value: impl Fn(Vector) -> f64 + 'static,

@@ -125,7 +125,11 @@ pub fn fresnel() -> impl Strategy<Value = Fresnel> {
 }
 
 pub fn ggx_brdf() -> impl Strategy<Value = Brdf> {
-    let masking = prop_oneof![Just(Masking::HeightCorrelated), Just(Masking::Separable)];
+    let masking = prop_oneof![
+        Just(Masking::HeightCorrelated),
+        Just(Masking::Separable),
+        Just(Masking::MaskedAlone)
+    ];
     (roughness(), fresnel(), masking).prop_map(|(roughness, fresnel, masking)| Brdf::Ggx {
         roughness,
         fresnel,

@@ -139,6 +139,7 @@ fn g2_over_four_cosines(
     match masking {
         Masking::HeightCorrelated => mu_o * 0.5 / (mu_o * root_i + mu * root_o),
         Masking::Separable => mu_o / ((mu + root_i) * (mu_o + root_o)),
+        Masking::MaskedAlone => Real::from(0.5) / (mu + root_i),
     }
 }
 

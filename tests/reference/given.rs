@@ -1,4 +1,4 @@
-//! The crate's own Fresnel factors by the model's parameters, as one type.
+//! The crate's own Fresnel factors by the model's parameters, as one type; and a caller's own masking.
 
 use stochastic_light_culling as crate_under_test;
 use stochastic_light_culling::{Conductor, Dielectric, Error, NoFresnel, Schlick};
@@ -43,5 +43,15 @@ impl crate_under_test::Fresnel for GivenFresnel {
             Self::Dielectric(fresnel) => fresnel.maximum(smallest_cosine),
             Self::Conductor(fresnel) => fresnel.maximum(smallest_cosine),
         }
+    }
+}
+
+/// No facet shadows another: G2 = G1(μ_i).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaskedAlone;
+
+impl crate_under_test::MaskingShadowing for MaskedAlone {
+    fn over_four_incident_cosines(cosine: f32, root: f32, _: f32, _: f32) -> f32 {
+        0.5 / (cosine + root)
     }
 }

@@ -10,6 +10,8 @@ use super::{Fresnel, Vector};
 pub enum Masking {
     HeightCorrelated,
     Separable,
+    /// G2 = G1(μ_i): more than height-correlated, the most that a caller may state.
+    MaskedAlone,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -209,6 +211,7 @@ pub fn anisotropic_g2(
     match masking {
         Masking::HeightCorrelated => 1.0 / (1.0 + a + b),
         Masking::Separable => 1.0 / ((1.0 + a) * (1.0 + b)),
+        Masking::MaskedAlone => 1.0 / (1.0 + a),
     }
 }
 
@@ -220,5 +223,6 @@ pub fn smith_g2(alpha: f64, masking: Masking, mu: f64, mu_o: f64) -> f64 {
     match masking {
         Masking::HeightCorrelated => 1.0 / (1.0 + lambda(alpha, mu) + lambda(alpha, mu_o)),
         Masking::Separable => smith_g1(alpha, mu) * smith_g1(alpha, mu_o),
+        Masking::MaskedAlone => smith_g1(alpha, mu),
     }
 }

@@ -19,7 +19,7 @@ pub mod vector;
 pub use camera::View;
 pub use fresnel::Fresnel;
 pub use frustum::Frustum;
-pub use given::GivenFresnel;
+pub use given::{GivenFresnel, MaskedAlone};
 pub use lobe::{
     Brdf, Masking, Surface, SurfaceFrame, anisotropic_g2, anisotropic_ndf, ggx_ndf, smith_g1,
     smith_g2,

@@ -2,7 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use stochastic_light_culling::{Bounded, Direction, Ellipsoid, Ggx, GgxLobe, Schlick, glam::Vec3};
+use stochastic_light_culling::{
+    Bounded, Direction, Ellipsoid, Ggx, GgxLobe, Incidence, Paper, Schlick, Tight, glam::Vec3,
+};
 
 use crate::reference::{Brdf, Fresnel, Masking, Smallest, Surface, Vector};
 
@@ -50,22 +52,24 @@ pub fn grid(reflectances: &[f32]) -> Vec<Place> {
 impl Place {
     pub fn lobe(self) -> GgxLobe<Schlick> {
         let angle = self.degrees.to_radians();
-        let incoming =
-            Direction::new(Vec3::new(angle.sin(), 0.0, angle.cos())).expect("a unit vector");
+        let incoming = Vec3::new(angle.sin(), 0.0, angle.cos());
+        let incidence = Incidence {
+            normal: Direction::Z,
+            incoming: Direction::new(incoming).expect("a unit vector"),
+        };
         GgxLobe::new(
             Ggx::new(self.roughness).expect("in range"),
             Schlick::new(self.f0).expect("in range"),
-            Direction::Z,
-            incoming,
+            incidence,
         )
     }
 
     pub fn measure(self) -> Volumes {
         let lobe = self.lobe();
-        let spheroid = volume(&lobe.unit_bound().into());
+        let spheroid = volume(&lobe.unit_bound_by(Paper).into());
         let incoming = Vector::from(*lobe.incoming()).unit();
         Volumes {
-            tight: volume(&lobe.tight_bound()) / spheroid,
+            tight: volume(&lobe.unit_bound_by(Tight)) / spheroid,
             attainable: self.smallest(incoming) / spheroid,
         }
     }

@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 
 use stochastic_light_culling::{
-    Camera, DepthInterval, Ellipsoid, Stretch, TileDepths, TileRectangle,
+    Camera, DepthInterval, Ellipsoid, ProjectedEllipsoid, TileDepths, TileRectangle,
     glam::{Mat3, Vec2, Vec3},
 };
 
@@ -114,7 +114,8 @@ impl Subregion {
     /// The tiles, each with its depths cut in two.
     pub fn tile_depths(&self, depths: Depths) -> TileDepths {
         let tile = |[x, y]: [u32; 2]| &self.tiles[(y * TILES[0] + x) as usize];
-        let mut tiles = TileDepths::new(TILES, 2, |at| tile(at).rectangle()).expect("not empty");
+        let mut tiles =
+            TileDepths::from_rectangles(TILES, 2, |at| tile(at).rectangle()).expect("not empty");
         for y in 0..TILES[1] {
             for x in 0..TILES[0] {
                 tiles.set([x, y], halves(depths(tile([x, y]))));
@@ -125,7 +126,7 @@ impl Subregion {
 }
 
 impl Light {
-    pub fn stretch(&self, camera: &Camera) -> Stretch {
+    pub fn stretch(&self, camera: &Camera) -> ProjectedEllipsoid {
         // World space looks along −z.
         let world = |[x, y, z]: [f64; 3]| Vec3::new(x as f32, y as f32, -z as f32);
         let u = world(self.axis).normalize();
@@ -133,7 +134,7 @@ impl Light {
         let rotation = Mat3::from_cols(u, v, u.cross(v));
         let semi_axes = Vec3::new(self.long as f32, self.short as f32, self.short as f32);
         let ellipsoid = Ellipsoid::new(world(self.center), rotation, semi_axes).expect("in range");
-        Stretch::new(&ellipsoid, camera).expect("not empty")
+        ellipsoid.project(camera).expect("not empty")
     }
 }
 

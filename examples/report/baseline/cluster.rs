@@ -3,7 +3,7 @@
 //! [Örtegren & Persson 2016].
 
 use rayon::prelude::*;
-use stochastic_light_culling::{Camera, DepthInterval, Proxy};
+use stochastic_light_culling::{Camera, DepthInterval, Proxy, Tight};
 
 use super::{Polyhedron, Raster, Span};
 use crate::frame::{Frame, GlossyLight, Shaded, Subregion, Tiles, shade};
@@ -79,9 +79,9 @@ fn clusters_of(
     );
     let mut lists = vec![Vec::new(); (columns * rows) as usize * slices.len()];
     for local in 0..interleave.lights_in(subregion, lights.len() as u32) {
-        let number = interleave.join_light(subregion, local);
-        let light = &lights[number as usize];
-        let ellipsoid = light.vpl.tight_bound(&frame.roulette, light.xi);
+        let index = interleave.join_light(subregion, local);
+        let light = &lights[index as usize];
+        let ellipsoid = light.vpl.bound_by(Tight, &frame.roulette, light.xi);
         let Some(polyhedron) = Polyhedron::around(&ellipsoid, Proxy::Icosahedron, camera) else {
             continue;
         };
@@ -90,7 +90,7 @@ fn clusters_of(
             let first = slices.partition_point(|slice| slice.far() < near);
             let end = slices.partition_point(|slice| slice.near() <= far);
             for list in &mut tile[first.min(end)..end] {
-                list.push(number);
+                list.push(index);
             }
         });
     }

@@ -1,7 +1,7 @@
 //! Neither culling nor roulette: some of the lights, drawn at random, each that much brighter.
 
 use rayon::prelude::*;
-use stochastic_light_culling::{Xi, glam::Vec3};
+use stochastic_light_culling::{FrameSeed, glam::Vec3};
 
 use crate::frame::{Frame, GlossyLight, Path};
 
@@ -13,14 +13,14 @@ pub fn light(frame: &Frame, lights: &[GlossyLight], share: u32, seed: u32) -> Ve
         .into_par_iter()
         .map(|subregion| {
             let count = interleave.lights_in(subregion, lights.len() as u32);
-            let mut numbers: Vec<u32> = (0..count)
+            let mut indices: Vec<u32> = (0..count)
                 .map(|local| interleave.join_light(subregion, local))
                 .collect();
-            let order = |number: &u32| Xi::hashed(*number, share, seed).get();
-            numbers.sort_by(|a, b| order(a).total_cmp(&order(b)));
-            numbers.truncate((count / share).max(1) as usize);
-            let weight = count as f32 / numbers.len().max(1) as f32;
-            (numbers, weight)
+            let order = |index: &u32| FrameSeed { frame: share, seed }.xi(*index).get();
+            indices.sort_by(|a, b| order(a).total_cmp(&order(b)));
+            indices.truncate((count / share).max(1) as usize);
+            let weight = count as f32 / indices.len().max(1) as f32;
+            (indices, weight)
         })
         .collect();
     let [width, _] = frame.surfaces.image_size;
@@ -32,16 +32,16 @@ pub fn light(frame: &Frame, lights: &[GlossyLight], share: u32, seed: u32) -> Ve
             }
             let pixel = [i as u32 % width, i as u32 / width];
             let (subregion, _) = interleave.split_pixel(pixel);
-            let (numbers, weight) = &drawn[subregion as usize];
-            let irradiance = |number: &u32| {
-                let light = &lights[*number as usize];
+            let (indices, weight) = &drawn[subregion as usize];
+            let irradiance = |index: &u32| {
+                let light = &lights[*index as usize];
                 if light.has_back_to(surface) {
                     return Vec3::ZERO;
                 }
                 let path = Path::new(light, surface, frame.least_distance_squared);
                 path.irradiance() * light.tint
             };
-            *weight * numbers.iter().map(irradiance).sum::<Vec3>()
+            *weight * indices.iter().map(irradiance).sum::<Vec3>()
         })
         .collect()
 }

@@ -19,7 +19,7 @@ pub struct Raster {
 
 /// A convex polyhedron in camera space, z being depth.
 ///
-/// A ray through the slopes (x, y) runs along d = (x, y, 1). It meets a triangle before the eye where
+/// A ray through the slopes (x, y) runs along d = (x, y, 1). It meets a triangle in front of the eye where
 /// d is on the inner side of the three planes through the eye and an edge, at the depth at which it
 /// meets the triangle's own plane [Olano & Greer 1997]: no clipping, wherever the vertices are.
 pub struct Polyhedron {

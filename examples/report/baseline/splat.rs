@@ -2,7 +2,7 @@
 //! surface is inside evaluates the light [Dachsbacher & Stamminger 2006].
 
 use rayon::prelude::*;
-use stochastic_light_culling::{Camera, Proxy};
+use stochastic_light_culling::{Camera, Proxy, Tight};
 
 use super::{Polyhedron, Raster};
 use crate::frame::{Frame, GlossyLight, Shaded, Sums};
@@ -46,7 +46,7 @@ fn splat_subregion(
     let mut sums = vec![Sums::default(); (width * height) as usize];
     for local in 0..interleave.lights_in(subregion, lights.len() as u32) {
         let light = &lights[interleave.join_light(subregion, local) as usize];
-        let ellipsoid = light.vpl.tight_bound(&frame.roulette, light.xi);
+        let ellipsoid = light.vpl.bound_by(Tight, &frame.roulette, light.xi);
         let Some(polyhedron) = Polyhedron::around(&ellipsoid, Proxy::Icosphere, camera) else {
             continue;
         };

@@ -5,7 +5,7 @@
 //! variances are sums over all lights: nothing is drawn.
 
 use rayon::prelude::*;
-use stochastic_light_culling::{Direction, GgxLobe, LambertLobe, Lobe, glam::Vec3};
+use stochastic_light_culling::{Direction, GgxLobe, Incidence, LambertLobe, Lobe, glam::Vec3};
 
 use super::{DELTA, F0, ROUGHNESS, Study, of_frames};
 use crate::figure::{Axis, Figure, Line, Look, Panel, Point, Series};
@@ -114,7 +114,11 @@ fn arrivals(subject: &Subject, receiver: Receiver) -> Vec<Vec<Arrival>> {
         .step_by(some)
         .filter_map(|surface| {
             let normal = Direction::new(surface.normal).ok()?;
-            let to_eye = Direction::new(eye - surface.position).ok()?;
+            // By reciprocity, as lit from where the eye is.
+            let incidence = Incidence {
+                normal,
+                incoming: Direction::new(eye - surface.position).ok()?,
+            };
             Some(match receiver {
                 Receiver::Diffuse => {
                     let lobe = LambertLobe::new(0.8, normal).expect("in range");
@@ -122,8 +126,7 @@ fn arrivals(subject: &Subject, receiver: Receiver) -> Vec<Vec<Arrival>> {
                 }
                 Receiver::Glossy(roughness) => {
                     let Gloss { ggx, fresnel } = Gloss::new(roughness, F0);
-                    // By reciprocity, as lit from where the eye is.
-                    let lobe = GgxLobe::new(ggx, fresnel, normal, to_eye);
+                    let lobe = GgxLobe::new(ggx, fresnel, incidence);
                     arrivals_at(&frame, &lights, surface, &lobe)
                 }
             })

@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use stochastic_light_culling::{Bounded, Ellipsoid, GgxLobe, Schlick};
+use stochastic_light_culling::{Bounded, Ellipsoid, GgxLobe, Paper, Schlick, Tight, Triaxial};
 
 use super::Study;
 use crate::figure::{Axis, Figure, Line, Look, Panel, Point, Series};
@@ -118,14 +118,14 @@ pub fn make(effort: &Effort, done: &dyn Fn()) -> Study {
 /// The volume over that of the paper's spheroid.
 fn over_spheroid(bound: BoundKind, place: Place) -> f64 {
     let lobe = place.lobe();
-    let spheroid = lobe.unit_bound();
+    let spheroid = lobe.unit_bound_by(Paper);
     let ball = |radius: f32| f64::from(radius).powi(3);
     let volume = match bound {
         BoundKind::Sphere => ball(spheroid.sphere_at_focus().radius()),
         BoundKind::Enclosing => ball(spheroid.enclosing_sphere().radius()),
         BoundKind::Spheroid => return 1.0,
-        BoundKind::Triaxial => volume(&lobe.triaxial_bound()),
-        BoundKind::Tight => volume(&lobe.tight_bound()),
+        BoundKind::Triaxial => volume(&lobe.unit_bound_by(Triaxial)),
+        BoundKind::Tight => volume(&lobe.unit_bound_by(Tight)),
     };
     volume / crate::tightness::volume(&spheroid.into())
 }
@@ -148,11 +148,12 @@ fn nanoseconds(bound: BoundKind, lobes: &[GgxLobe<Schlick>], is_quick: bool) -> 
             .map(|_| round())
             .fold(f64::INFINITY, f64::min)
     }
+    let spheroid = |lobe: &GgxLobe<Schlick>| lobe.unit_bound_by(Paper);
     match bound {
-        BoundKind::Sphere => time(lobes, is_quick, |lobe| lobe.unit_bound().sphere_at_focus()),
-        BoundKind::Enclosing => time(lobes, is_quick, |lobe| lobe.unit_bound().enclosing_sphere()),
-        BoundKind::Spheroid => time(lobes, is_quick, |lobe| Ellipsoid::from(lobe.unit_bound())),
-        BoundKind::Triaxial => time(lobes, is_quick, GgxLobe::triaxial_bound),
-        BoundKind::Tight => time(lobes, is_quick, GgxLobe::tight_bound),
+        BoundKind::Sphere => time(lobes, is_quick, |lobe| spheroid(lobe).sphere_at_focus()),
+        BoundKind::Enclosing => time(lobes, is_quick, |lobe| spheroid(lobe).enclosing_sphere()),
+        BoundKind::Spheroid => time(lobes, is_quick, |lobe| Ellipsoid::from(spheroid(lobe))),
+        BoundKind::Triaxial => time(lobes, is_quick, |lobe| lobe.unit_bound_by(Triaxial)),
+        BoundKind::Tight => time(lobes, is_quick, |lobe| lobe.unit_bound_by(Tight)),
     }
 }

@@ -6,7 +6,7 @@ use core::sync::atomic::{AtomicUsize, Ordering};
 
 use stochastic_light_culling::{Culler, Error, LightBatch, LightLists, TileDepths};
 
-use crate::pipeline::{self, SIZE};
+use crate::pipeline;
 
 const CAPACITY: usize = 1 << 20;
 
@@ -48,9 +48,7 @@ pub fn lists_as_it_must() -> bool {
 
 fn listed() -> Result<usize, Error> {
     let (camera, grid, depths) = (pipeline::camera()?, pipeline::grid()?, pipeline::depths()?);
-    let mut tiles = TileDepths::new(grid.size(), 1, |tile| {
-        camera.tile_rectangle(SIZE, grid.pixels(tile))
-    })?;
+    let mut tiles = TileDepths::new(&grid, &camera, 1)?;
     for tile in grid.tiles() {
         tiles.set(tile, [depths]);
     }
@@ -58,6 +56,6 @@ fn listed() -> Result<usize, Error> {
     batch.extend(pipeline::stretch(0)?.map(|stretch| (7, stretch)));
     let mut lists = LightLists::new();
     Culler::new().cull(&batch, &tiles, &mut lists)?;
-    let all_are_it = lists.numbers().iter().all(|number| *number == 7);
+    let all_are_it = lists.lights().iter().all(|number| *number == 7);
     Ok(if all_are_it { lists.len() } else { 0 })
 }

@@ -1,8 +1,8 @@
 //! From a lobe to the tiles that it touches.
 
-use stochastic_light_culling::{
-    Camera, Conductor, DepthInterval, Direction, Error, Ggx, GgxLobe, Roulette, Stretch, TileGrid,
-    TileTest, Vpl, Xi, glam::Vec3,
+use stochastic_light_culling::{FrameSeed, Incidence, 
+    Camera, Conductor, DepthInterval, Direction, Error, Ggx, GgxLobe, Roulette, ProjectedEllipsoid, TileGrid,
+    Vpl, glam::Vec3,
 };
 
 pub const SIZE: [u32; 2] = [128, 128];
@@ -21,13 +21,13 @@ pub fn depths() -> Result<DepthInterval, Error> {
 }
 
 /// A light on a metal floor, which a photon of 2 W reached from the upper left.
-pub fn stretch(light: u32) -> Result<Option<Stretch>, Error> {
+pub fn stretch(light: u32) -> Result<Option<ProjectedEllipsoid>, Error> {
     let incoming = Direction::new(Vec3::new(-1.0, 1.0, 0.0))?;
     let gold = Conductor::new(0.16, 3.5)?;
-    let lobe = GgxLobe::new(Ggx::new(0.1)?, gold, Direction::Y, incoming);
+    let lobe = GgxLobe::new(Ggx::new(0.1)?, gold, Incidence { normal: Direction::Y, incoming });
     let light_there = Vpl::new(Vec3::ZERO, 2.0, lobe)?;
-    let bound = light_there.bound(&Roulette::new(0.01)?, Xi::hashed(light, 0, 0));
-    Ok(Stretch::new(&bound.into(), &camera()?))
+    let bound = light_there.bound(&Roulette::new(0.01)?, FrameSeed { frame: 0, seed: 0 }.xi(light));
+    Ok(bound.project(&camera()?))
 }
 
 /// How many tiles a light touches.

@@ -130,7 +130,7 @@ pub fn lobes(bench: &mut Bench) {
     bench.add(
         (kind, "Phong"),
         |case| {
-            let lobe = PhongLobe::new(0.8, exponent(case), case.normal, case.incoming);
+            let lobe = PhongLobe::new(0.8, exponent(case), case.incidence());
             (lobe.expect("in range"), *case.outgoing)
         },
         |(lobe, outgoing)| lobe.value(*outgoing),

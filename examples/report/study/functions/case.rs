@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use stochastic_light_culling::{Direction, Ggx, GgxLobe, Xi, glam::Vec3};
+use stochastic_light_culling::{Direction, FrameSeed, Ggx, GgxLobe, Incidence, glam::Vec3};
 
 use crate::reference::{Brdf, Fresnel, Masking, Surface, Vector, smith_g1};
 
@@ -14,18 +14,18 @@ pub struct Case {
     pub incoming: Direction,
     pub outgoing: Direction,
     pub position: Vec3,
-    pub number: u32,
+    pub index: u32,
 }
 
 impl Case {
     /// With a roughness from 0.01 to 1, and both directions a degree above the surface or more.
-    pub fn new(number: u32) -> Self {
-        let random = |what: u32| 2.0 * Xi::hashed(number, what, 1).get() - 1.0;
-        let vector = |what: u32| Vec3::new(random(what), random(what + 1), random(what + 2));
+    pub fn new(index: u32) -> Self {
+        let random = |frame| 2.0 * FrameSeed { frame, seed: 1 }.xi(index).get() - 1.0;
+        let vector = |first| Vec3::new(random(first), random(first + 1), random(first + 2));
         let direction = |vector| Direction::new(vector).expect("random vectors are not zero");
         let normal = direction(vector(0));
-        let above = |what| {
-            let other = direction(vector(what));
+        let above = |first| {
+            let other = direction(vector(first));
             let height = other.dot(*normal);
             direction(*other * height.signum() + 0.02 * *normal)
         };
@@ -35,7 +35,7 @@ impl Case {
             incoming: above(3),
             outgoing: above(6),
             position: 10.0 * vector(10),
-            number,
+            index,
         }
     }
 
@@ -44,7 +44,14 @@ impl Case {
     }
 
     pub fn lobe<F: stochastic_light_culling::Fresnel>(&self, fresnel: F) -> GgxLobe<F> {
-        GgxLobe::new(self.ggx(), fresnel, self.normal, self.incoming)
+        GgxLobe::new(self.ggx(), fresnel, self.incidence())
+    }
+
+    pub fn incidence(&self) -> Incidence {
+        Incidence {
+            normal: self.normal,
+            incoming: self.incoming,
+        }
     }
 
     pub fn surface(&self) -> Surface {

@@ -1,8 +1,8 @@
 //! Bounds, stretches and tests of tiles.
 
 use stochastic_light_culling::{
-    Bound, Bounded, Camera, CameraSphere, DepthInterval, Ellipsoid, GgxLobe, PixelRectangle,
-    Roulette, Schlick, Sphere, Stretch, TileTest, Xi, glam::Vec3,
+    Bounded, Camera, DepthInterval, Ellipsoid, FrameSeed, GgxLobe, Paper, ProjectedEllipsoid,
+    Roulette, Schlick, Shape as _, Sphere, Tight, TileGrid, Triaxial, glam::Vec3,
 };
 
 use super::{Bench, Case, METAL, off};
@@ -15,13 +15,13 @@ pub fn bounds(bench: &mut Bench) {
     bench.add(
         (kind, "sphere at light"),
         |case| case.lobe(metal),
-        |lobe| lobe.unit_bound().sphere_at_focus(),
+        |lobe| lobe.unit_bound_by(Paper).sphere_at_focus(),
         |case, sphere: Sphere| off(sphere.radius(), exact(case) / f64::from(case.roughness)),
     );
     bench.add(
         (kind, "enclosing sphere"),
         |case| case.lobe(metal),
-        |lobe| lobe.unit_bound().enclosing_sphere(),
+        |lobe| lobe.unit_bound_by(Paper).enclosing_sphere(),
         |case, sphere: Sphere| {
             let alpha = f64::from(case.roughness);
             off(
@@ -33,23 +33,26 @@ pub fn bounds(bench: &mut Bench) {
     bench.add(
         (kind, "spheroid"),
         |case| case.lobe(metal),
-        GgxLobe::unit_bound,
+        |lobe| lobe.unit_bound_by(Paper),
         |case, spheroid| off(spheroid.radius(), exact(case)),
     );
+    let seed = FrameSeed { frame: 0, seed: 2 };
     bench.add(
         (kind, "scale r, roulette"),
-        |case| Xi::hashed(case.number, 0, 2),
+        |case| seed.xi(case.index),
         |xi| Roulette::new(1e-3).expect("in range").scale(2.0, *xi),
         |case, scale| {
-            let xi = Xi::hashed(case.number, 0, 2).get();
+            let xi = seed.xi(case.index).get();
             off(scale, (2.0 / (f64::from(1e-3_f32) * f64::from(xi))).sqrt())
         },
     );
     stretch(bench, "stretch of spheroid", |lobe| {
-        lobe.unit_bound().into()
+        lobe.unit_bound_by(Paper).into()
     });
-    stretch(bench, "triaxial + stretch", GgxLobe::triaxial_bound);
-    stretch(bench, "tight + stretch", GgxLobe::tight_bound);
+    stretch(bench, "triaxial + stretch", |lobe| {
+        lobe.unit_bound_by(Triaxial)
+    });
+    stretch(bench, "tight + stretch", |lobe| lobe.unit_bound_by(Tight));
 }
 
 fn camera() -> Camera {
@@ -72,7 +75,7 @@ fn stretch(
         |case| (*case, case.lobe(metal)),
         |input| {
             let ellipsoid = placed(input);
-            (ellipsoid, Stretch::new(&ellipsoid, &camera))
+            (ellipsoid, ellipsoid.project(&camera))
         },
         |_, (ellipsoid, stretch)| {
             let Some(stretch) = stretch else {
@@ -108,33 +111,26 @@ fn stretch(
 
 pub fn tests(bench: &mut Bench) {
     let camera = camera();
-    let size = [640, 360];
+    let grid = TileGrid::new([640, 360], 16).expect("not empty");
     let tile = move |case: &Case| {
-        let [x, y] = [1, 2].map(|what| Xi::hashed(case.number, what, 3).get());
-        let min = [(x * 39.0) as u32 * 16, (y * 21.0) as u32 * 16];
-        let rectangle = camera.tile_rectangle(
-            size,
-            PixelRectangle {
-                min,
-                max: min.map(|pixel| pixel + 16),
-            },
-        );
-        let near = 10.0 + 25.0 * Xi::hashed(case.number, 3, 3).get();
+        let random = |frame| FrameSeed { frame, seed: 3 }.xi(case.index).get();
+        let [x, y] = [random(1) * 39.0, random(2) * 21.0];
+        let near = 10.0 + 25.0 * random(3);
         (
-            rectangle,
+            camera.tile(&grid, [x as u32, y as u32]),
             DepthInterval::new(near, near + 2.0).expect("in range"),
         )
     };
     let metal = Schlick::new(METAL).expect("in range");
     let stretched = move |case: &Case| {
-        let unit = case.lobe(metal).tight_bound();
+        let unit = case.lobe(metal).unit_bound_by(Tight);
         let scale = 30.0 * case.roughness.max(0.03);
-        let stretch = Stretch::new(&unit.placed(case.position, scale), &camera);
+        let stretch = unit.placed(case.position, scale).project(&camera);
         stretch.map(|stretch| (stretch, tile(case)))
     };
-    let in_vain = |share: f64| move |_: &Case, _: bool| share;
+    let unneeded = |share: f64| move |_: &Case, _: bool| share;
     let cases: Vec<_> = bench.cases.iter().filter_map(stretched).collect();
-    let kept = |test: &dyn Fn(&Stretch, &(_, _)) -> bool| {
+    let kept = |test: &dyn Fn(&ProjectedEllipsoid, &(_, _)) -> bool| {
         cases
             .iter()
             .filter(|(stretch, tile)| test(stretch, tile))
@@ -154,7 +150,7 @@ pub fn tests(bench: &mut Bench) {
         |(stretch, (rectangle, depths))| {
             stretch.is_some_and(|stretch| stretch.touches(rectangle, depths))
         },
-        in_vain(share(by_box)),
+        unneeded(share(by_box)),
     );
     bench.add(
         ("tests", "exact, after box"),
@@ -164,13 +160,13 @@ pub fn tests(bench: &mut Bench) {
                 stretch.touches(rectangle, depths) && stretch.touches_exactly(rectangle, depths)
             })
         },
-        in_vain(share(exactly)),
+        unneeded(share(exactly)),
     );
     bench.add(
         ("tests", "sphere"),
         |case| {
             let sphere = Sphere::new(case.position, 1.0).expect("in range");
-            (CameraSphere::new(&sphere, &camera), tile(case))
+            (sphere.project(&camera), tile(case))
         },
         |(sphere, (rectangle, depths))| {
             sphere.is_some_and(|sphere| sphere.touches(rectangle, depths))

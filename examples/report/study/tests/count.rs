@@ -1,4 +1,4 @@
-//! How many of the lights in lists are there in vain.
+//! How many of the lights in lists no pixel accepts.
 
 use rayon::prelude::*;
 
@@ -49,7 +49,7 @@ pub fn outcome(
 /// pixels of the lights in their lists.
 fn totals(
     frame: &Frame,
-    (number, subregion): (u32, &Subregion),
+    (i, subregion): (u32, &Subregion),
     lights: &[GlossyLight],
     lists: &Lists,
     of_subregion: usize,
@@ -58,9 +58,7 @@ fn totals(
     for tile in subregion.grid.tiles() {
         let mut surfaces = vec![Vec::new(); subregion.depths.intervals() as usize];
         for pixel in subregion.grid.pixels(tile).pixels() {
-            let surface = frame
-                .surfaces
-                .at(frame.interleave.join_pixel(number, pixel));
+            let surface = frame.surfaces.at(frame.interleave.join_pixel(i, pixel));
             if let Some(interval) = subregion.depths.interval_of(tile, surface.depth) {
                 surfaces[interval as usize].push(surface);
             }

@@ -2,7 +2,9 @@
 
 use std::time::Instant;
 
-use stochastic_light_culling::{Culler, HalfSpace, LightBatch, LightLists, Stretch, TileTest};
+use stochastic_light_culling::{
+    Culler, LightBatch, LightLists, Paper, ProjectedEllipsoid, ProjectedHalfSpace, Tight,
+};
 
 use super::count::{Lists, Outcome, outcome};
 use super::{Setting, Test};
@@ -28,19 +30,17 @@ pub fn measure(stage: &Stage, frame: &Frame, lights: &[GlossyLight], setting: Se
     let bound = |light: &GlossyLight| {
         let (roulette, xi) = (&frame.roulette, light.xi);
         if setting.is_tight {
-            Stretch::new(&light.vpl.tight_bound(roulette, xi), camera)
+            light.vpl.bound_by(Tight, roulette, xi).project(camera)
         } else {
-            Stretch::new(&light.vpl.bound(roulette, xi).into(), camera)
+            light.vpl.bound_by(Paper, roulette, xi).project(camera)
         }
     };
-    let batches: Vec<LightBatch<Stretch>> = (0..stage.interleave.subregions())
+    let batches: Vec<LightBatch<ProjectedEllipsoid>> = (0..stage.interleave.subregions())
         .map(|subregion| {
             let count = stage.interleave.lights_in(subregion, lights.len() as u32);
-            let numbers = (0..count).map(|local| stage.interleave.join_light(subregion, local));
+            let indices = (0..count).map(|local| stage.interleave.join_light(subregion, local));
             let mut batch = LightBatch::new();
-            batch.extend(
-                numbers.filter_map(|number| Some((number, bound(&lights[number as usize])?))),
-            );
+            batch.extend(indices.filter_map(|i| Some((i, bound(&lights[i as usize])?))));
             batch
         })
         .collect();
@@ -48,9 +48,10 @@ pub fn measure(stage: &Stage, frame: &Frame, lights: &[GlossyLight], setting: Se
     if setting.test.is_exact() {
         culler = culler.with_exact_test();
     }
-    let half_spaces: Vec<HalfSpace> = lights
+    let half_spaces: Vec<ProjectedHalfSpace> = lights
         .iter()
-        .map(|light| HalfSpace::new(light.vpl.position(), light.normal, camera))
+        .map(|light| light.vpl.half_space().expect("metal has a horizon"))
+        .map(|half_space| half_space.project(camera))
         .collect();
     let ((culled, kept), ns) = nanoseconds(stage, || {
         let mut culled = Vec::new();
@@ -90,15 +91,13 @@ pub fn measure(stage: &Stage, frame: &Frame, lights: &[GlossyLight], setting: Se
 /// The lists without lights that have their backs to a whole tile.
 fn before_surfaces(
     stage: &Stage,
-    (number, subregion): (u32, &Subregion),
+    (i, subregion): (u32, &Subregion),
     lists: &LightLists,
-    half_spaces: &[HalfSpace],
+    half_spaces: &[ProjectedHalfSpace],
 ) -> Vec<Vec<u32>> {
     let mut kept = Vec::new();
     for tile in subregion.grid.tiles() {
-        let pixels = stage
-            .interleave
-            .join_pixels(number, subregion.grid.pixels(tile));
+        let pixels = stage.interleave.join_pixels(i, subregion.grid.pixels(tile));
         let rectangle = stage
             .subject
             .camera

@@ -1,4 +1,4 @@
-//! (e) Lights that a list holds in vain, against nanoseconds, for each test, tile size and slicing.
+//! (e) Lights that a list holds and no pixel accepts, against nanoseconds, for each test, tile size and slicing.
 
 mod count;
 mod measure;
@@ -144,7 +144,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
                 needed,
                 at_pixels,
             } = measure(&stage, &frame, &lights, setting);
-            let in_vain = 1.0 - needed as f64 / listed.max(1) as f64;
+            let unneeded = 1.0 - needed as f64 / listed.max(1) as f64;
             let surfaces = subject
                 .surfaces
                 .surfaces
@@ -163,7 +163,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
                 name_of(setting.slicing).into(),
                 ns.into(),
                 (listed as f64 / lights.len() as f64).into(),
-                in_vain.into(),
+                unneeded.into(),
                 (at_pixels as f64 / surfaces.count().max(1) as f64).into(),
             ]);
             let label = match setting.family {
@@ -171,7 +171,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
                 AROUND_SURFACES | SLICES => name_of(setting.slicing).replace(" slices", ""),
                 _ => setting.test.name().into(),
             };
-            let point = Point::new(ns, 100.0 * in_vain).labelled(label);
+            let point = Point::new(ns, 100.0 * unneeded).labelled(label);
             match series.last_mut() {
                 Some(series) if series.name == setting.family => series.points.push(point),
                 _ => series.push(Series {

@@ -1,0 +1,124 @@
+use core::ops::{Deref, Neg};
+
+use glam::Vec3;
+
+use super::Error;
+use crate::num::{self, Single, Vector3, dot_f64};
+
+/// A unit vector.
+///
+/// Unit length to a few units in the last place, so nothing after the constructor checks again. It
+/// dereferences to the [`Vec3`] that it holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Direction(Vec3);
+
+impl Direction {
+    /// The direction along +x.
+    pub const X: Self = Self(Vec3::X);
+    /// The direction along +y.
+    pub const Y: Self = Self(Vec3::Y);
+    /// The direction along +z.
+    pub const Z: Self = Self(Vec3::Z);
+
+    /// The direction of `vector`, which may have any finite, non-zero length, subnormal to huge.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Vector`] if `vector` is zero or has a NaN or infinite component.
+    ///
+    /// ```
+    /// use stochastic_light_culling::{Direction, glam::Vec3};
+    ///
+    /// assert_eq!(*Direction::new(Vec3::new(0.0, 0.0, 1e-40))?, Vec3::Z);
+    /// assert!(Direction::new(Vec3::ZERO).is_err());
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
+    pub fn new(vector: Vec3) -> Result<Self, Error> {
+        Self::of("direction", vector)
+    }
+
+    /// [`new`](Self::new), for a vector that an error calls `quantity`.
+    pub(crate) fn of(quantity: &'static str, vector: Vec3) -> Result<Self, Error> {
+        let largest = vector.abs().max_element();
+        if !vector.is_finite() || largest == 0.0 {
+            return Err(Error::Vector {
+                quantity,
+                value: vector,
+                valid: "finite and not zero",
+            });
+        }
+        // Twice, since the reciprocal of a subnormal length overflows.
+        let lifted = if largest < f32::MIN_POSITIVE {
+            vector * (1.0 / f32::MIN_POSITIVE)
+        } else {
+            vector
+        };
+        let scaled = lifted / lifted.abs().max_element();
+        Ok(Self(scaled / num::sqrt(scaled.length_squared())))
+    }
+
+    /// `vector`, which has unit length already.
+    #[inline]
+    pub(crate) fn from_unit(vector: Vec3) -> Self {
+        debug_assert!((dot_f64(vector, vector) - 1.0).abs() < 1e-6);
+        Self(vector)
+    }
+
+    /// [`new`](Self::new), but for a vector that has unit length already, as near as `new` itself comes
+    /// to it, and is taken as it is: what was saved is what is read.
+    #[cfg(feature = "serde")]
+    pub(crate) fn of_unit_or_any_length(vector: Vec3) -> Result<Self, Error> {
+        // The length is off by 3.5u at most, its square by twice that.
+        const NEAR: f64 = 8.0 * num::UNIT_ROUNDOFF as f64;
+        if (dot_f64(vector, vector) - 1.0).abs() <= NEAR {
+            Ok(Self(vector))
+        } else {
+            Self::new(vector)
+        }
+    }
+
+    /// This direction mirrored at a surface with the given `normal`: see [`mirrored`].
+    #[inline]
+    pub(crate) fn mirrored(self, normal: Self) -> Self {
+        Self::from_unit(mirrored(Vector3::from(self), normal.into()).into())
+    }
+}
+
+/// 2(n·ω)n − ω, the direction ω = `direction` mirrored at a surface with the given `normal` = n.
+///
+/// Computed in `f64`, so that rounding to `f32` alone tilts it: half an ulp in each component.
+#[inline(always)]
+pub(crate) fn mirrored<N: Single>(direction: Vector3<N>, normal: Vector3<N>) -> Vector3<N> {
+    let (w, n) = (direction.widen(), normal.widen());
+    let twice = n.dot(w) * 2.0 / n.dot(n);
+    Vector3::narrow(n * twice - w)
+}
+
+impl Deref for Direction {
+    type Target = Vec3;
+
+    fn deref(&self) -> &Vec3 {
+        &self.0
+    }
+}
+
+impl Neg for Direction {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl From<Direction> for Vec3 {
+    fn from(direction: Direction) -> Self {
+        direction.0
+    }
+}
+
+impl From<Direction> for Vector3<f32> {
+    #[inline(always)]
+    fn from(direction: Direction) -> Self {
+        direction.0.into()
+    }
+}

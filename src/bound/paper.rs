@@ -1,0 +1,54 @@
+//! The paper's spheroid around a GGX lobe.
+
+use core::f32::consts::FRAC_1_PI;
+
+use super::shape::{MAX_QUADS, Quads};
+use super::spheroid::Spheroids;
+use super::strategy::single_unit_bound;
+use super::{BoundStrategy, Paper, Spheroid};
+use crate::lobe::{Fresnel, GgxLobe, GgxLobes, MaskingShadowing};
+use crate::num::{Single, UNIT_ROUNDOFF};
+
+/// Half an ulp in each component of the axis, which is all that its rounding to f32 tilts it by.
+const AXIS_TILT_RADIANS: f32 = 0.87 * UNIT_ROUNDOFF;
+
+/// The paper's spheroid for Φ/(δξ) = 1.
+///
+/// F ≤ F_max, G2 ≤ G1(μ) and D(ω_h·n) ≤ D(cos(θ/2)), where θ is the angle between ω_o and ω_u:
+/// the lobe is at most that of the spheroid with
+/// r² = F_max G1(μ)/(4πμ) [Tokuyoshi & Harada 2017, Eqs. 9–12].
+///
+/// Touched ahead of the light but for F, G2 and rounding.
+impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<GgxLobe<F, G>> for Paper {
+    type Shape = Spheroid;
+
+    fn unit_bound(&self, lobe: &GgxLobe<F, G>) -> Spheroid {
+        single_unit_bound(*self, lobe)
+    }
+
+    type PerLight = F;
+
+    const QUADS: usize = 3;
+
+    #[inline(always)]
+    fn to_quads(&self, lobe: &GgxLobe<F, G>) -> (Quads<f32>, F) {
+        let mut quads = [[0.0; 4]; MAX_QUADS];
+        [quads[0], quads[1]] = lobe.quads();
+        quads[2][0] = lobe.ggx().roughness();
+        (quads, *lobe.fresnel())
+    }
+
+    #[inline(always)]
+    fn unit_bounds<N: Single>(&self, quads: &Quads<N>, fresnels: &[F]) -> Spheroids<N> {
+        let lobe = GgxLobes::from_quads([quads[0], quads[1]], quads[2][0]);
+        let is_lit = lobe.incident_cosine.is_positive();
+        let reflected = N::select(is_lit, lobe.max_fresnel(fresnels), lobe.roughness.zero());
+        let radius_squared = reflected * lobe.masking_over_four_cosines() * FRAC_1_PI;
+        Spheroids::around_tilted_axis(
+            lobe.mirror_direction(),
+            radius_squared.sqrt(),
+            lobe.roughness,
+            AXIS_TILT_RADIANS,
+        )
+    }
+}

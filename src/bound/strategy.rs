@@ -1,0 +1,182 @@
+use super::shape::{Quads, Shape};
+use crate::light::{Roulette, Vpl, Xi};
+use crate::lobe::Lobe;
+use crate::num::Single;
+
+/// A way to bound lobes of type `L`: [`Tight`], [`Triaxial`] and [`Paper`], each for the lobes that it is
+/// known for, and [`OwnBound`] for every lobe.
+///
+/// ```
+/// use stochastic_light_culling::{
+///     Bounded, Direction, Ggx, GgxLobe, Incidence, Paper, Schlick, Tight, Triaxial, glam::Vec3,
+/// };
+///
+/// let incidence = Incidence {
+///     normal: Direction::Y,
+///     incoming: Direction::new(Vec3::new(-3.0, 1.0, 0.0))?,
+/// };
+/// let plastic = GgxLobe::new(Ggx::new(0.2)?, Schlick::new(0.04)?, incidence);
+/// let volume = |semi_axes: Vec3| semi_axes.element_product();
+/// let tight = volume(plastic.unit_bound_by(Tight).semi_axes());
+/// let triaxial = volume(plastic.unit_bound_by(Triaxial).semi_axes());
+/// let paper = plastic.unit_bound_by(Paper);
+/// let paper = paper.long_semi_axis() * paper.radius() * paper.radius();
+/// assert!(tight < triaxial && triaxial < paper);
+/// assert_eq!(plastic.unit_bound(), plastic.unit_bound_by(Tight));
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+pub trait BoundStrategy<L: Lobe>: Copy {
+    /// The kind of shape.
+    type Shape: Shape;
+
+    /// A shape that contains the unit isosurface {√value(ω)·ω : ω a unit vector} of `lobe`, for a light at
+    /// the origin.
+    fn unit_bound(&self, lobe: &L) -> Self::Shape;
+
+    /// What a lobe has besides numbers.
+    #[doc(hidden)]
+    type PerLight: Copy;
+
+    /// Quads in use.
+    #[doc(hidden)]
+    const QUADS: usize;
+
+    #[doc(hidden)]
+    fn to_quads(&self, lobe: &L) -> (Quads<f32>, Self::PerLight);
+
+    /// [`unit_bound`](Self::unit_bound) in each lane, of lobes that are not empty.
+    #[doc(hidden)]
+    fn unit_bounds<N: Single>(
+        &self,
+        quads: &Quads<N>,
+        per_light: &[Self::PerLight],
+    ) -> <Self::Shape as Shape>::Lanes<N>;
+}
+
+/// The one-lane case of [`BoundStrategy::unit_bounds`].
+#[inline(always)]
+pub(super) fn single_unit_bound<L: Lobe, B: BoundStrategy<L>>(strategy: B, lobe: &L) -> B::Shape {
+    let (quads, per_light) = strategy.to_quads(lobe);
+    B::Shape::from_lanes(strategy.unit_bounds::<f32>(&quads, &[per_light]))
+}
+
+/// A lobe whose isosurface has a closed bound.
+///
+/// A lobe of another crate implements this with the strategy [`OwnBound`], and can then be culled and
+/// batched as those of this crate:
+///
+/// ```
+/// use stochastic_light_culling::{Bounded, Direction, Lobe, OwnBound, Sphere, glam::Vec3};
+///
+/// /// Even intensity within a hemisphere.
+/// #[derive(Clone, Copy)]
+/// struct Hemisphere(Direction);
+///
+/// impl Lobe for Hemisphere {
+///     fn value(&self, outgoing: Vec3) -> f32 {
+///         if self.0.dot(outgoing) > 0.0 { 0.25 } else { 0.0 }
+///     }
+/// }
+///
+/// impl Bounded for Hemisphere {
+///     type Shape = Sphere;
+///     type Strategy = OwnBound;
+///
+///     fn unit_bound(&self) -> Sphere {
+///         Sphere::new(Vec3::ZERO, 0.5).expect("a constant")
+///     }
+/// }
+/// ```
+pub trait Bounded: Lobe + Sized + 'static {
+    /// The shape of the recommended bound.
+    type Shape: Shape;
+
+    /// The strategy that [`unit_bound`](Self::unit_bound) follows, and batches with it.
+    type Strategy: BoundStrategy<Self, Shape = Self::Shape> + Default;
+
+    /// The recommended shape around the unit isosurface {√value(ω)·ω : ω a unit vector}, for a light at
+    /// the origin.
+    #[must_use]
+    fn unit_bound(&self) -> Self::Shape;
+
+    /// The shape that `strategy` puts around the unit isosurface.
+    #[must_use]
+    fn unit_bound_by<B: BoundStrategy<Self>>(&self, strategy: B) -> B::Shape {
+        strategy.unit_bound(self)
+    }
+}
+
+impl<L: Bounded> Vpl<L> {
+    /// The recommended bound of everything that accepts this light in a frame with `roulette` and `xi`.
+    ///
+    /// For a light that does not change, keep [`unit_bound`](Bounded::unit_bound) and place that
+    /// anew each frame.
+    #[inline]
+    #[must_use]
+    pub fn bound(&self, roulette: &Roulette, xi: Xi) -> L::Shape {
+        self.bound_by(L::Strategy::default(), roulette, xi)
+    }
+}
+
+impl<L: Lobe> Vpl<L> {
+    /// The bound that `strategy` puts around everything that accepts this light in a frame with `roulette`
+    /// and `xi`.
+    #[inline]
+    #[must_use]
+    pub fn bound_by<B: BoundStrategy<L>>(
+        &self,
+        strategy: B,
+        roulette: &Roulette,
+        xi: Xi,
+    ) -> B::Shape {
+        let scale = roulette.scale(self.flux(), xi);
+        strategy
+            .unit_bound(self.lobe())
+            .placed(self.position(), scale)
+    }
+}
+
+/// The bound of the papers: the spheroid of a [`GgxLobe`](crate::GgxLobe)
+/// [Tokuyoshi & Harada 2017, Eqs. 9–15], and the spheres of a [`LambertLobe`](crate::LambertLobe)
+/// [Tokuyoshi & Harada 2017, Sec. 6] and of a [`ConstantLobe`](crate::ConstantLobe)
+/// [Tokuyoshi & Harada 2016].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Paper;
+
+/// An ellipsoid in closed form that follows the lobe along three axes, of a [`GgxLobe`](crate::GgxLobe) or an
+/// [`AnisotropicGgxLobe`](crate::AnisotropicGgxLobe).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Triaxial;
+
+/// The smallest ellipsoid there is, or nearly: of a [`GgxLobe`](crate::GgxLobe) from a table, of a
+/// [`PhongLobe`](crate::PhongLobe) and a [`LambertLobe`](crate::LambertLobe) in closed form.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tight;
+
+/// The bound that a lobe gives itself as [`Bounded::unit_bound`]. A batch takes it light by light, and
+/// places and projects it in lanes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OwnBound;
+
+impl<L: Bounded> BoundStrategy<L> for OwnBound {
+    type Shape = L::Shape;
+
+    #[inline]
+    fn unit_bound(&self, lobe: &L) -> L::Shape {
+        lobe.unit_bound()
+    }
+
+    type PerLight = ();
+
+    const QUADS: usize = L::Shape::QUADS;
+
+    #[inline(always)]
+    fn to_quads(&self, lobe: &L) -> (Quads<f32>, ()) {
+        (lobe.unit_bound().to_quads(), ())
+    }
+
+    #[inline(always)]
+    fn unit_bounds<N: Single>(&self, quads: &Quads<N>, _: &[()]) -> <L::Shape as Shape>::Lanes<N> {
+        L::Shape::from_quads(quads)
+    }
+}

@@ -1,0 +1,164 @@
+use core::marker::PhantomData;
+use core::ops::Range;
+
+use fearless_simd::{Level, Simd, dispatch};
+use glam::Vec3;
+
+use super::LightBatch;
+use super::culler::{at_most, widest};
+use super::group::{BatchInput, Frame, GROUP, Group, KeptBounds, Lights};
+use crate::bound::{BoundStrategy, Bounded};
+use crate::light::{Roulette, Vpl, Xi};
+use crate::lobe::Lobe;
+use crate::project::{Project, ProjectedBound};
+use crate::view::Camera;
+
+/// Makes the lights of a frame ready for a [`Culler`](crate::Culler): from lights to a [`LightBatch`] in
+/// one pass, several times as fast as one light after the other.
+///
+/// The shapes are bit by bit those of the scalar functions, in the order in which the lights come; lights
+/// that reach nowhere are left out. Nothing is allocated but what the batch needs to grow.
+///
+/// ```
+/// use stochastic_light_culling::{
+///     BatchBuilder, Camera, Direction, FrameSeed, Ggx, GgxLobe, Incidence, LightBatch, NoFresnel,
+///     Paper, Roulette, Vpl, glam::Vec3,
+/// };
+///
+/// let lobe = GgxLobe::new(Ggx::new(0.2)?, NoFresnel, Incidence::head_on(Direction::Y));
+/// let light = |i: u32| Vpl::new(Vec3::new(i as f32, 0.0, -9.0), 0.5, lobe);
+/// let lights = (0..100).map(light).collect::<Result<Vec<_>, _>>()?;
+///
+/// let roulette = Roulette::new(0.01)?;
+/// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
+/// let seed = FrameSeed { frame: 7, seed: 0 };
+/// let builder = BatchBuilder::new(&roulette, &camera);
+/// let with_xi = || (0..).zip(&lights).map(|(i, light)| (i, light, seed.xi(i)));
+///
+/// let mut batch = LightBatch::new();
+/// builder.add(with_xi(), &mut batch);
+/// let (light, ellipsoid) = batch.iter().nth(41).expect("one of a hundred");
+/// let bound = lights[41].bound(&roulette, seed.xi(41));
+/// assert_eq!((light, Some(ellipsoid)), (41, bound.project(&camera)));
+///
+/// // The paper's bound, which is asked for by name.
+/// batch.clear();
+/// builder.add_by(Paper, with_xi(), &mut batch);
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct BatchBuilder {
+    frame: Frame,
+    level: Level,
+}
+
+impl BatchBuilder {
+    /// A builder for a frame with `roulette` that `camera` sees, with the widest vectors that this
+    /// processor has; without the feature `std`, that the target is compiled for.
+    pub fn new(roulette: &Roulette, camera: &Camera) -> Self {
+        Self {
+            frame: Frame {
+                roulette: *roulette,
+                camera: *camera,
+            },
+            level: widest(),
+        }
+    }
+
+    /// The same builder with vectors of at most `lanes` lanes, as
+    /// [`Culler::with_lanes`](crate::Culler::with_lanes) has it.
+    #[must_use]
+    pub fn with_lanes(self, lanes: usize) -> Self {
+        Self {
+            level: at_most(lanes),
+            ..self
+        }
+    }
+
+    /// Adds lights, each given by the index that lists will hold, itself, and its ξ in this frame,
+    /// with the [recommended bound](Vpl::bound) of their lobe.
+    pub fn add<'a, L: Bounded<Shape: Project>>(
+        &self,
+        lights: impl IntoIterator<Item = (u32, &'a Vpl<L>, Xi)>,
+        batch: &mut LightBatch<ProjectedBound<L>>,
+    ) {
+        self.add_by(L::Strategy::default(), lights, batch);
+    }
+
+    /// Adds lights as [`add`](Self::add) does, with the bound that `strategy` [puts](Vpl::bound_by) around
+    /// them.
+    pub fn add_by<'a, L: Lobe + 'static, B: BoundStrategy<L, Shape: Project>>(
+        &self,
+        strategy: B,
+        lights: impl IntoIterator<Item = (u32, &'a Vpl<L>, Xi)>,
+        batch: &mut LightBatch<<B::Shape as Project>::Projected>,
+    ) {
+        let lights = lights.into_iter();
+        let lights = lights.map(|(index, light, xi)| (index, (light, xi)));
+        self.fill(Lights::bounded_by(strategy), lights, batch);
+    }
+
+    /// Adds bounds that are kept from frame to frame, each given by the index that lists will hold,
+    /// itself, and the position and the scale that it is [placed](crate::Shape::placed) with: for a light's
+    /// [unit bound](Bounded::unit_bound) these are its position and [`Roulette::scale`].
+    pub fn add_placed<'a, B: Project>(
+        &self,
+        bounds: impl IntoIterator<Item = (u32, &'a B, Vec3, f32)>,
+        batch: &mut LightBatch<B::Projected>,
+    ) {
+        let bounds = bounds.into_iter();
+        let bounds =
+            bounds.map(|(index, bound, position, scale)| (index, (bound, position, scale)));
+        self.fill(KeptBounds(PhantomData), bounds, batch);
+    }
+
+    /// Gathers items and adds them, such that each sixteen fill up a chunk.
+    fn fill<'a, I: BatchInput>(
+        &self,
+        input: I,
+        items: impl Iterator<Item = (u32, I::Item<'a>)>,
+        batch: &mut LightBatch<<I::Shape as Project>::Projected>,
+    ) {
+        let mut items = items.filter(|(_, item)| I::may_reach(*item));
+        let Some((light, item)) = items.next() else {
+            return;
+        };
+        let mut group = Group::splat(input, item);
+        let mut first = batch.next_lane();
+        group.set(first, light, item);
+        let mut end = first + 1;
+        for (light, item) in items {
+            if end == GROUP {
+                self.flush(&mut group, first..end, batch);
+                first = batch.next_lane();
+                end = first;
+            }
+            group.set(end, light, item);
+            end += 1;
+        }
+        self.flush(&mut group, first..end, batch);
+    }
+
+    /// Adds the items of these lanes of a group.
+    fn flush<I: BatchInput>(
+        &self,
+        group: &mut Group<I>,
+        lanes: Range<usize>,
+        batch: &mut LightBatch<<I::Shape as Project>::Projected>,
+    ) {
+        dispatch!(self.level, simd => shape(simd, group, &lanes, &self.frame, batch));
+    }
+}
+
+/// Makes shapes of the items in these lanes.
+#[inline(always)]
+fn shape<S: Simd, I: BatchInput>(
+    simd: S,
+    group: &mut Group<I>,
+    lanes: &Range<usize>,
+    frame: &Frame,
+    batch: &mut LightBatch<<I::Shape as Project>::Projected>,
+) {
+    group.shape(simd, lanes, frame);
+    group.append_to(batch, lanes.end);
+}

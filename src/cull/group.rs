@@ -1,0 +1,295 @@
+//! From lights to the shapes that a batch holds, sixteen at a time.
+//!
+//! The numbers of lights are laid side by side, and vectors go over them as the scalar functions go over one
+//! light: the same generic functions, and so the same bits.
+
+use core::marker::PhantomData;
+use core::ops::Range;
+
+use fearless_simd::{Simd, SimdBase, SimdMask};
+use glam::Vec3;
+
+use super::LightBatch;
+use super::batch::Chunk;
+use super::lanes::{LANES, parts, store};
+use crate::bound::{BoundStrategy, MAX_QUADS, Quads, Shape, ShapeLanes};
+use crate::light::{Roulette, Vpl, Xi};
+use crate::lobe::Lobe;
+use crate::num::{F32Lanes, Quad, Real, Single, Vector3, load_quads};
+use crate::project::{Project, ProjectedLanes};
+use crate::view::Camera;
+
+/// What shapes are made of.
+pub(super) trait BatchInput: Copy {
+    /// A light, or a bound and its placement.
+    type Item<'a>: Copy;
+    type Shape: Project;
+    /// What a light has besides numbers.
+    type PerLight: Copy;
+
+    /// Quads in use.
+    const QUADS: usize;
+
+    /// Whether an item may reach somewhere: an estimate, which saves the work on those that do not.
+    fn may_reach(item: Self::Item<'_>) -> bool;
+
+    fn placement(item: Self::Item<'_>) -> Placement;
+    fn to_quads(self, item: Self::Item<'_>) -> (Quads<f32>, Self::PerLight);
+
+    /// Bounds for unit scale and a light at the origin.
+    fn unit_bounds<N: Single>(
+        self,
+        quads: &Quads<N>,
+        per_light: &[Self::PerLight],
+    ) -> <Self::Shape as Shape>::Lanes<N>;
+
+    /// Scales of items with this flux and frame parameter.
+    fn scale<N: Single>(roulette: &Roulette, flux: N, parameter: N) -> N;
+}
+
+/// Where a bound is placed, and the numbers that its scale follows from.
+pub(super) struct Placement {
+    position: Vec3,
+    /// Φ
+    flux: f32,
+    /// Of the frame: ξ, or the scale itself.
+    parameter: f32,
+}
+
+/// Lights, bounded by a strategy.
+pub(super) struct Lights<L, B>(B, PhantomData<L>);
+
+impl<L, B: Copy> Clone for Lights<L, B> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<L, B: Copy> Copy for Lights<L, B> {}
+
+impl<L, B> Lights<L, B> {
+    pub fn bounded_by(strategy: B) -> Self {
+        Self(strategy, PhantomData)
+    }
+}
+
+impl<L: Lobe + 'static, B: BoundStrategy<L, Shape: Project>> BatchInput for Lights<L, B> {
+    type Item<'a> = (&'a Vpl<L>, Xi);
+    type Shape = B::Shape;
+    type PerLight = B::PerLight;
+
+    const QUADS: usize = B::QUADS;
+
+    #[inline(always)]
+    fn may_reach((light, _): (&Vpl<L>, Xi)) -> bool {
+        light.flux() > 0.0 && !light.lobe().is_empty()
+    }
+
+    #[inline(always)]
+    fn placement((light, xi): (&Vpl<L>, Xi)) -> Placement {
+        Placement {
+            position: light.position(),
+            flux: light.flux(),
+            parameter: xi.get(),
+        }
+    }
+
+    #[inline(always)]
+    fn to_quads(self, (light, _): (&Vpl<L>, Xi)) -> (Quads<f32>, B::PerLight) {
+        self.0.to_quads(light.lobe())
+    }
+
+    #[inline(always)]
+    fn unit_bounds<N: Single>(
+        self,
+        quads: &Quads<N>,
+        per_light: &[B::PerLight],
+    ) -> <B::Shape as Shape>::Lanes<N> {
+        self.0.unit_bounds(quads, per_light)
+    }
+
+    #[inline(always)]
+    fn scale<N: Single>(roulette: &Roulette, flux: N, xi: N) -> N {
+        roulette.scale_in_lanes(flux, xi)
+    }
+}
+
+/// Bounds that are kept from frame to frame.
+#[derive(Clone, Copy)]
+pub(super) struct KeptBounds<B>(pub PhantomData<B>);
+
+impl<B: Project> BatchInput for KeptBounds<B> {
+    type Item<'a> = (&'a B, Vec3, f32);
+    type Shape = B;
+    type PerLight = ();
+
+    const QUADS: usize = B::QUADS;
+
+    #[inline(always)]
+    fn may_reach((bound, _, scale): (&B, Vec3, f32)) -> bool {
+        !bound.is_empty() && scale > 0.0
+    }
+
+    #[inline(always)]
+    fn placement((_, position, scale): (&B, Vec3, f32)) -> Placement {
+        Placement {
+            position,
+            flux: 0.0,
+            parameter: scale,
+        }
+    }
+
+    #[inline(always)]
+    fn to_quads(self, (bound, ..): (&B, Vec3, f32)) -> (Quads<f32>, ()) {
+        (bound.to_quads(), ())
+    }
+
+    #[inline(always)]
+    fn unit_bounds<N: Single>(self, quads: &Quads<N>, _: &[()]) -> B::Lanes<N> {
+        B::from_quads(quads)
+    }
+
+    #[inline(always)]
+    fn scale<N: Single>(_: &Roulette, _: N, scale: N) -> N {
+        scale
+    }
+}
+
+/// What all lights of a frame share.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    pub roulette: Roulette,
+    pub camera: Camera,
+}
+
+/// Chunks made in a row: while one waits for its roots, the next can begin.
+const CHUNKS: usize = u64::BITS as usize / LANES;
+/// Lights of a group, as many as an integer has bits.
+pub(super) const GROUP: usize = CHUNKS * LANES;
+
+/// Lights, and the shapes that are made of them.
+#[repr(C, align(64))]
+pub(super) struct Group<I: BatchInput> {
+    input: I,
+    /// Light by light, since four numbers are copied at once: position and Φ.
+    placements: [Quad<f32>; GROUP],
+    quads: [[Quad<f32>; GROUP]; MAX_QUADS],
+    parameters: [f32; GROUP],
+    per_light: [I::PerLight; GROUP],
+    lights: [u32; GROUP],
+    made: [Made<<I::Shape as Project>::Projected>; CHUNKS],
+}
+
+/// Shapes of sixteen lights.
+#[derive(Clone, Copy)]
+struct Made<P: crate::project::Projected> {
+    chunk: Chunk<P>,
+    /// Those that have a shape, as bits, and the depths that these reach.
+    shaped: u32,
+    reach: [f32; 2],
+}
+
+impl<I: BatchInput> Group<I> {
+    /// A group with `item` in all lanes.
+    #[inline(always)]
+    pub fn splat(input: I, item: I::Item<'_>) -> Self {
+        let Placement {
+            position: p,
+            flux,
+            parameter,
+        } = I::placement(item);
+        let (of_item, per_light) = input.to_quads(item);
+        let mut quads = [[[0.0; 4]; GROUP]; MAX_QUADS];
+        for (lanes, quad) in quads[..I::QUADS].iter_mut().zip(of_item) {
+            *lanes = [quad; GROUP];
+        }
+        let none = Made {
+            chunk: Chunk::nowhere(),
+            shaped: 0,
+            reach: [0.0; 2],
+        };
+        Self {
+            input,
+            placements: [[p.x, p.y, p.z, flux]; GROUP],
+            quads,
+            parameters: [parameter; GROUP],
+            per_light: [per_light; GROUP],
+            lights: [0; GROUP],
+            made: [none; CHUNKS],
+        }
+    }
+
+    /// Puts an item in `lane` < [`GROUP`].
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, light: u32, item: I::Item<'_>) {
+        let lane = lane % GROUP;
+        let Placement {
+            position: p,
+            flux,
+            parameter,
+        } = I::placement(item);
+        self.placements[lane] = [p.x, p.y, p.z, flux];
+        let (quads, per_light) = self.input.to_quads(item);
+        for (lanes, quad) in self.quads[..I::QUADS].iter_mut().zip(&quads) {
+            lanes[lane] = *quad;
+        }
+        self.parameters[lane] = parameter;
+        self.per_light[lane] = per_light;
+        self.lights[lane] = light;
+    }
+
+    /// Makes the shapes of these lanes, at least one.
+    #[inline(always)]
+    pub fn shape<S: Simd>(&mut self, simd: S, lanes: &Range<usize>, frame: &Frame) {
+        // From bit 0, which is the first lane.
+        let wanted = (u64::MAX >> (GROUP - lanes.end)) & (u64::MAX << lanes.start);
+        for chunk in 0..lanes.end.div_ceil(LANES) {
+            self.shape_chunk(simd, chunk, wanted, frame);
+        }
+    }
+
+    #[inline(always)]
+    fn shape_chunk<S: Simd>(&mut self, simd: S, chunk: usize, wanted: u64, frame: &Frame) {
+        let mut nearest = F32Lanes::new(simd, f32::INFINITY);
+        let mut farthest = F32Lanes::new(simd, f32::NEG_INFINITY);
+        let made = &mut self.made[chunk];
+        made.shaped = 0;
+        for part in 0..parts::<S>() {
+            let first = chunk * LANES + part * S::f32s::LEN;
+            let lanes = first..first + S::f32s::LEN;
+            let [x, y, z, flux] = load_quads(simd, &self.placements[lanes.clone()]);
+            let mut quads = [[F32Lanes::new(simd, 0.0); 4]; MAX_QUADS];
+            for (vectors, quads) in quads[..I::QUADS].iter_mut().zip(&self.quads) {
+                *vectors = load_quads(simd, &quads[lanes.clone()]);
+            }
+            let parameter = flux.load(&self.parameters[lanes.clone()]);
+            let scale = I::scale(&frame.roulette, flux, parameter);
+            let unit = self.input.unit_bounds(&quads, &self.per_light[lanes]);
+            let reaches = !unit.is_empty() & scale.is_positive();
+            let placed = unit.placed(Vector3::new(x, y, z), scale);
+            let ProjectedLanes { fields, reach } = I::Shape::project_lanes(placed, &frame.camera);
+            let of_chunk = made.chunk.fields.as_mut().iter_mut();
+            for (lanes, vector) in of_chunk.zip(fields.as_ref()) {
+                store(lanes, part, *vector);
+            }
+
+            let of_part = (wanted >> first) & ((1 << S::f32s::LEN) - 1);
+            let shaped = reaches & S::mask32s::from_bitmask(simd, of_part);
+            let [near, far] = reach;
+            nearest = F32Lanes::select(shaped, nearest.min(near), nearest);
+            farthest = F32Lanes::select(shaped, farthest.max(far), farthest);
+            made.shaped |= (shaped.to_bitmask() as u32) << (part * S::f32s::LEN);
+        }
+        made.reach = [nearest.0.reduce_min(), farthest.0.reduce_max()];
+        let lights = &self.lights[chunk * LANES..][..LANES];
+        made.chunk.lights.copy_from_slice(lights);
+    }
+
+    /// Adds the shapes that were made of the lanes before `end` to `batch`.
+    #[inline(always)]
+    pub fn append_to(&self, batch: &mut LightBatch<<I::Shape as Project>::Projected>, end: usize) {
+        for made in &self.made[..end.div_ceil(LANES)] {
+            batch.append(&made.chunk, made.shaped, made.reach);
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Lights as a shader reads them.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::project::{ProjectedEllipsoid, ProjectedSphere};
+
+/// A [`ProjectedEllipsoid`] and the light that it is of, for a storage buffer: 48 bytes, with the offsets of this
+/// structure in WGSL and of its like in GLSL's std430.
+///
+/// ```wgsl
+/// struct Ellipsoid {
+///     x_and_y_axes: vec4<f32>, // offset  0: M₁₁, M₂₁, M₁₂, M₂₂
+///     z_axis: vec3<f32>,       // offset 16: M₁₃, M₂₃, m
+///     light: u32,              // offset 28
+///     center: vec3<f32>,       // offset 32: Mc′
+///     unused: u32,             // offset 44
+/// }
+/// ```
+///
+/// The elements of M that are not listed are zero. The record has all that the
+/// [tile test](crate::ProjectedEllipsoid::touches) takes: products, sums, minima and maxima. A shader that does
+/// these operations may still answer otherwise where a tile and a light just touch or just miss, since shading
+/// languages let compilers contract and reorder them, and flush subnormal numbers. The light was enlarged for
+/// one rounding of each operation, so contraction, which leaves some out, loses no light; nothing is promised
+/// of operations that are reordered or not correctly rounded.
+///
+/// ```
+/// use stochastic_light_culling::{Camera, Ellipsoid, GpuEllipsoid, glam::{Mat3, Vec3}};
+///
+/// let camera = Camera::look_at(Vec3::ZERO, -Vec3::Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
+/// let ellipsoid = Ellipsoid::new(Vec3::new(0.0, 0.0, -8.0), Mat3::IDENTITY, Vec3::ONE)?;
+/// let projected = ellipsoid.project(&camera).expect("not empty");
+/// let records = [GpuEllipsoid::new(&projected, 7)];
+/// let bytes: &[u8] = bytemuck::cast_slice(&records);
+/// assert_eq!(bytes[28..32], 7_u32.to_ne_bytes());
+/// let GpuEllipsoid { x_and_y_axes, z_axis, center, unused, .. } = records[0];
+/// assert_eq!(center, [0.0, 0.0, 8.0 * z_axis[2]]);
+/// assert_eq!((x_and_y_axes[1], unused), (0.0, 0));
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuEllipsoid {
+    /// M₁₁, M₂₁, M₁₂, M₂₂: the images of the x and y axes of camera space, whose third components are 0.
+    pub x_and_y_axes: [f32; 4],
+    /// M₁₃, M₂₃, m: the image of the depth axis.
+    pub z_axis: [f32; 3],
+    /// The light, as the engine numbers them.
+    pub light: u32,
+    /// Mc′, the centre of the unit sphere.
+    pub center: [f32; 3],
+    /// Zero, and free for other uses.
+    pub unused: u32,
+}
+
+impl GpuEllipsoid {
+    /// The record of `ellipsoid`, which is of `light`.
+    #[must_use]
+    pub fn new(ellipsoid: &ProjectedEllipsoid, light: u32) -> Self {
+        let m = ellipsoid.matrix();
+        Self {
+            x_and_y_axes: [m.x_axis.x, m.x_axis.y, m.y_axis.x, m.y_axis.y],
+            z_axis: m.z_axis.to_array(),
+            light,
+            center: ellipsoid.center().to_array(),
+            unused: 0,
+        }
+    }
+}
+
+/// A [`ProjectedSphere`] for a storage or uniform buffer: 16 bytes, a `vec4<f32>`. Which light it is of, its
+/// place in the buffer says.
+///
+/// ```
+/// use stochastic_light_culling::{Camera, GpuSphere, Sphere, glam::Vec3};
+///
+/// let camera = Camera::look_at(Vec3::ZERO, -Vec3::Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
+/// let sphere = Sphere::new(Vec3::new(0.0, 0.0, -8.0), 1.0)?;
+/// let record = sphere.project(&camera).map(|sphere| GpuSphere::from(&sphere));
+/// let record = record.expect("not empty");
+/// assert_eq!(record.center, [0.0, 0.0, 8.0]);
+/// assert_eq!(bytemuck::bytes_of(&record)[12..], record.radius_squared.to_ne_bytes());
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuSphere {
+    /// The centre in camera space; offset 0.
+    pub center: [f32; 3],
+    /// The square of the radius, infinite of a sphere that is everywhere; offset 12.
+    pub radius_squared: f32,
+}
+
+impl From<&ProjectedSphere> for GpuSphere {
+    fn from(sphere: &ProjectedSphere) -> Self {
+        Self {
+            center: sphere.center().to_array(),
+            radius_squared: sphere.radius_squared(),
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! What serde writes of each type, and the constructor that checks what it reads.
+//!
+//! Plain types with public fields derive this where they are defined.
+
+use glam::{Mat3, Vec3};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+
+use crate::base::{Direction, Error};
+use crate::light::{Roulette, Vpl, Xi};
+use crate::lobe::{
+    AnisotropicGgx, AnisotropicGgxLobe, Conductor, Dielectric, Fresnel, Ggx, GgxLobe, Incidence,
+    LambertLobe, Lobe, PhongLobe, Schlick,
+};
+use crate::view::{Camera, DepthInterval, Interleave, Parts, TileGrid, TileRectangle};
+
+/// For each type the fields that are saved, and the constructor that they are read through.
+macro_rules! saved {
+    ($(
+        |$this:ident| $name:ident { $($field:ident: $kind:ty = $value:expr),* } => $constructed:expr;
+    )*) => {$(
+        const _: () = {
+            #[derive(Serialize, Deserialize)]
+            struct Saved {
+                $($field: $kind,)*
+            }
+
+            impl Serialize for $name {
+                fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                    let $this = self;
+                    Saved { $($field: $value,)* }.serialize(serializer)
+                }
+            }
+
+            impl<'de> Deserialize<'de> for $name {
+                fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                    let Saved { $($field),* } = Saved::deserialize(deserializer)?;
+                    checked($constructed)
+                }
+            }
+        };
+    )*};
+}
+
+/// What a constructor refuses is an error with its words.
+fn checked<T, E: de::Error>(constructed: Result<T, Error>) -> Result<T, E> {
+    constructed.map_err(E::custom)
+}
+
+saved! {
+    |ggx| AnisotropicGgx { roughness: [f32; 2] = ggx.roughness() } =>
+        AnisotropicGgx::new(roughness[0], roughness[1]);
+    |metal| Conductor { index: f32 = metal.index(), extinction: f32 = metal.extinction() } =>
+        Conductor::new(index, extinction);
+    |depths| DepthInterval { near: f32 = depths.near(), far: f32 = depths.far() } =>
+        DepthInterval::new(near, far);
+    |interface| Dielectric { relative_index: f32 = interface.relative_index() } =>
+        Dielectric::new(relative_index);
+    |ggx| Ggx { roughness: f32 = ggx.roughness() } => Ggx::new(roughness);
+    |interleave| Interleave {
+        image_size: [u32; 2] = interleave.image_size(),
+        width: u32 = interleave.width()
+    } => Interleave::new(image_size, width);
+    |lobe| LambertLobe { albedo: f32 = lobe.albedo(), normal: Direction = lobe.normal() } =>
+        LambertLobe::new(albedo, normal);
+    |lobe| PhongLobe {
+        albedo: f32 = lobe.albedo(),
+        exponent: f32 = lobe.exponent(),
+        normal: Direction = lobe.normal(),
+        incoming: Option<Direction> = lobe.incoming()
+    } => match incoming {
+        Some(incoming) => PhongLobe::new(albedo, exponent, Incidence { normal, incoming }),
+        None => PhongLobe::about(albedo, exponent, normal),
+    };
+    |roulette| Roulette { delta: f32 = roulette.delta() } => Roulette::new(delta);
+    |schlick| Schlick { f0: f32 = schlick.f0() } => Schlick::new(f0);
+    |grid| TileGrid { image_size: [u32; 2] = grid.image_size(), tile_size: u32 = grid.tile_size() } =>
+        TileGrid::new(image_size, tile_size);
+    |tile| TileRectangle { min: [f32; 2] = tile.min().into(), max: [f32; 2] = tile.max().into() } =>
+        TileRectangle::new(min.into(), max.into());
+    // Not the arguments of a constructor, which a camera does not keep, but the numbers they come to. The
+    // rotation is the images of the world's axes.
+    |camera| Camera {
+        rotation: [[f32; 3]; 3] = camera.parts().rotation.to_cols_array_2d(),
+        translation: [f32; 3] = camera.parts().translation.into(),
+        slope_scale: [f32; 2] = camera.parts().slope_scale.into(),
+        slope_offset: [f32; 2] = camera.parts().slope_offset.into(),
+        depth_numerator: f32 = camera.parts().depth_numerator,
+        depth_offset: f32 = camera.parts().depth_offset
+    } => Camera::of_parts(Parts {
+        rotation: Mat3::from_cols_array_2d(&rotation),
+        translation: translation.into(),
+        slope_scale: slope_scale.into(),
+        slope_offset: slope_offset.into(),
+        depth_numerator,
+        depth_offset,
+    });
+}
+
+/// A number on its own.
+impl Serialize for Xi {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.get().serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Xi {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        checked(Self::new(f32::deserialize(deserializer)?))
+    }
+}
+
+/// Three numbers, of any length when read.
+impl Serialize for Direction {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.to_array().serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Direction {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let vector = <[f32; 3]>::deserialize(deserializer)?;
+        checked(Self::of_unit_or_any_length(vector.into()))
+    }
+}
+
+/// Of a lobe; the form of its masking and shadowing is that of the type which is read.
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "GgxLobe")]
+struct SavedGgxLobe<F> {
+    ggx: Ggx,
+    fresnel: F,
+    normal: Direction,
+    incoming: Direction,
+}
+
+impl<F: Fresnel + Serialize, G> Serialize for GgxLobe<F, G> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let saved = SavedGgxLobe {
+            ggx: self.ggx(),
+            fresnel: *self.fresnel(),
+            normal: self.normal(),
+            incoming: self.incoming(),
+        };
+        saved.serialize(serializer)
+    }
+}
+
+impl<'de, F: Fresnel + Deserialize<'de>, G> Deserialize<'de> for GgxLobe<F, G> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let SavedGgxLobe {
+            ggx,
+            fresnel,
+            normal,
+            incoming,
+        } = SavedGgxLobe::deserialize(deserializer)?;
+        Ok(GgxLobe::new(ggx, fresnel, Incidence { normal, incoming }).with_masking())
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "AnisotropicGgxLobe")]
+struct SavedAnisotropicGgxLobe<F> {
+    ggx: AnisotropicGgx,
+    fresnel: F,
+    normal: Direction,
+    tangent: Direction,
+    incoming: Direction,
+}
+
+impl<F: Fresnel + Serialize, G> Serialize for AnisotropicGgxLobe<F, G> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let saved = SavedAnisotropicGgxLobe {
+            ggx: self.ggx(),
+            fresnel: *self.fresnel(),
+            normal: self.normal(),
+            tangent: self.tangent(),
+            incoming: self.incoming(),
+        };
+        saved.serialize(serializer)
+    }
+}
+
+impl<'de, F: Fresnel + Deserialize<'de>, G> Deserialize<'de> for AnisotropicGgxLobe<F, G> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let SavedAnisotropicGgxLobe {
+            ggx,
+            fresnel,
+            normal,
+            tangent,
+            incoming,
+        } = SavedAnisotropicGgxLobe::deserialize(deserializer)?;
+        let incidence = Incidence { normal, incoming };
+        let lobe = AnisotropicGgxLobe::new(ggx, fresnel, incidence, tangent);
+        checked(lobe.map(AnisotropicGgxLobe::with_masking))
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "Vpl")]
+struct SavedVpl<P, L> {
+    position: P,
+    flux: f32,
+    lobe: L,
+}
+
+impl<L: Lobe + Serialize> Serialize for Vpl<L> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let saved = SavedVpl {
+            position: self.position().to_array(),
+            flux: self.flux(),
+            lobe: self.lobe(),
+        };
+        saved.serialize(serializer)
+    }
+}
+
+impl<'de, L: Lobe + Deserialize<'de>> Deserialize<'de> for Vpl<L> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let SavedVpl::<[f32; 3], L> {
+            position,
+            flux,
+            lobe,
+        } = SavedVpl::deserialize(deserializer)?;
+        checked(Self::new(Vec3::from(position), flux, lobe))
+    }
+}

@@ -1,0 +1,9 @@
+//! Saving and reading, and records for GPUs.
+
+#[cfg(feature = "bytemuck")]
+mod gpu;
+#[cfg(feature = "serde")]
+mod impl_serde;
+
+#[cfg(feature = "bytemuck")]
+pub use gpu::{GpuEllipsoid, GpuSphere};

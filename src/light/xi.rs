@@ -1,0 +1,67 @@
+use crate::base::{Error, number_in};
+
+/// A light's random number ξ in (0, 1] for one frame, shared by all points that it may light.
+///
+/// Zero is left out, since it would let the light reach infinitely far.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct Xi(f32);
+
+impl Xi {
+    /// A random number of the caller's own.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `xi` is outside (0, 1] or NaN.
+    pub fn new(xi: f32) -> Result<Self, Error> {
+        number_in("random number ξ", xi, "in (0, 1]", f32::from_bits(1)..=1.0).map(Self)
+    }
+
+    /// ξ.
+    pub fn get(self) -> f32 {
+        self.0
+    }
+}
+
+/// Which frame of which sequence of random numbers: gives each light its ξ, with no state to keep.
+///
+/// ```
+/// use stochastic_light_culling::FrameSeed;
+///
+/// let first = FrameSeed { frame: 0, seed: 1 };
+/// let second = FrameSeed { frame: 1, seed: 1 };
+/// assert_eq!(first.xi(7), first.xi(7));
+/// assert_ne!(first.xi(7), second.xi(7));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct FrameSeed {
+    /// The frame.
+    pub frame: u32,
+    /// The sequence: another seed gives other numbers for all frames.
+    pub seed: u32,
+}
+
+impl FrameSeed {
+    /// The ξ of the light with the index `light`: the same each time.
+    ///
+    /// A multiple of 2⁻³², rounded to `f32`, from the hash of [Jarzynski & Olano 2020, "pcg3d"].
+    #[inline]
+    #[must_use]
+    pub fn xi(self, light: u32) -> Xi {
+        let [bits, ..] = pcg3d([light, self.frame, self.seed]);
+        // The sum takes 33 bits; its conversion rounds once, and the power of two is exact.
+        Xi((u64::from(bits) + 1) as f32 * (1.0 / 4_294_967_296.0))
+    }
+}
+
+/// Three hashed words of three words [Jarzynski & Olano 2020].
+#[inline]
+fn pcg3d(words: [u32; 3]) -> [u32; 3] {
+    fn stir([x, y, z]: [u32; 3]) -> [u32; 3] {
+        let x = x.wrapping_add(y.wrapping_mul(z));
+        let y = y.wrapping_add(z.wrapping_mul(x));
+        let z = z.wrapping_add(x.wrapping_mul(y));
+        [x, y, z]
+    }
+    let congruential = words.map(|v| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+    stir(stir(congruential).map(|v| v ^ (v >> 16)))
+}

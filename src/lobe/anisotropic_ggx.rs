@@ -1,0 +1,144 @@
+use core::f32::consts::FRAC_1_PI;
+
+use glam::Vec3;
+
+use super::{Ggx, MaskingShadowing};
+use crate::base::{Error, number_in};
+use crate::num::{Real, Single, Vector3};
+
+/// A GGX microsurface that is rougher along one tangent than along the other: brushed metal, hair-like
+/// grain [Heitz 2014; Trowbridge & Reitz 1975].
+///
+/// Its directions are given in the frame of the surface, as their components along the tangent, the
+/// bitangent n × tangent, and the normal n.
+///
+/// ```
+/// use stochastic_light_culling::{AnisotropicGgx, Ggx, HeightCorrelated, Separable, glam::Vec3};
+///
+/// let brushed = AnisotropicGgx::new(0.4, 0.1)?;
+/// // Facets lean along the tangent more often than across it.
+/// assert!(brushed.ndf(Vec3::new(0.3, 0.0, 1.0)) > brushed.ndf(Vec3::new(0.0, 0.3, 1.0)));
+///
+/// let (even, plain) = (AnisotropicGgx::new(0.2, 0.2)?, Ggx::new(0.2)?);
+/// let slanted = Vec3::new(0.6, 0.0, 0.8);
+/// assert!((even.masking(slanted) - plain.masking(0.8)).abs() < 1e-6);
+/// // Facets that are lit are more often seen as well than chance has it.
+/// let by_chance = brushed.masking_shadowing::<Separable>(slanted, slanted);
+/// assert!(by_chance < brushed.masking_shadowing::<HeightCorrelated>(slanted, slanted));
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AnisotropicGgx {
+    roughness: [f32; 2],
+}
+
+impl AnisotropicGgx {
+    /// A microsurface with the roughness `along` = α_x along the tangent and `across` = α_y along the
+    /// bitangent.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if one of them is outside \[[`Ggx::MIN_ROUGHNESS`], 1\] or NaN.
+    pub fn new(along: f32, across: f32) -> Result<Self, Error> {
+        let valid = Ggx::MIN_ROUGHNESS..=1.0;
+        let named = |quantity, roughness| {
+            number_in(
+                quantity,
+                roughness,
+                "in (0, 1], and at least 2⁻²⁰",
+                valid.clone(),
+            )
+        };
+        Ok(Self {
+            roughness: [
+                named("roughness α_x", along)?,
+                named("roughness α_y", across)?,
+            ],
+        })
+    }
+
+    /// \[α_x, α_y\].
+    pub fn roughness(self) -> [f32; 2] {
+        self.roughness
+    }
+
+    /// Whether α_x = α_y.
+    pub(crate) fn is_isotropic(self) -> bool {
+        let [along, across] = self.roughness;
+        along == across
+    }
+
+    /// The NDF D = 1/(π α_x α_y (x²/α_x² + y²/α_y² + z²)²) in sr⁻¹ at the unit vector along `half_vector`
+    /// = (x, y, z), which need not have unit length itself.
+    ///
+    /// Zero at and below the horizon, z ≤ 0, and for NaN. The largest value, 1/(πα_xα_y), is at the
+    /// normal.
+    #[inline]
+    pub fn ndf(self, half_vector: Vec3) -> f32 {
+        anisotropic_ndf(self.roughness, half_vector.into())
+    }
+
+    #[inline]
+    fn masking_root(self, direction: Vec3) -> f32 {
+        anisotropic_masking_root(self.roughness, direction.into())
+    }
+
+    /// Smith's masking function G1 = 2z/(z + √(α_x²x² + α_y²y² + z²)) for the unit vector `direction`
+    /// = (x, y, z): the visible share of the facets that face the viewer [Heitz 2014].
+    ///
+    /// In \[0, 1\]; zero for z ≤ 0 and NaN.
+    pub fn masking(self, direction: Vec3) -> f32 {
+        if direction.z > 0.0 {
+            2.0 * direction.z / (direction.z + self.masking_root(direction))
+        } else {
+            0.0
+        }
+    }
+
+    /// G2 in \[0, 1\], of the form `G`, for the unit vectors `incoming` = ω_i and `outgoing` = ω_o: the
+    /// share of facets that are both lit and seen. Zero if either is not above the surface.
+    pub fn masking_shadowing<G: MaskingShadowing>(self, incoming: Vec3, outgoing: Vec3) -> f32 {
+        if !(incoming.z > 0.0 && outgoing.z > 0.0) {
+            return 0.0;
+        }
+        4.0 * incoming.z
+            * G::over_four_incident_cosines(
+                incoming.z,
+                self.masking_root(incoming),
+                outgoing.z,
+                self.masking_root(outgoing),
+            )
+    }
+
+    /// The isotropic microsurface of the lesser roughness.
+    pub(super) fn smoother(self) -> Ggx {
+        Ggx::of_valid(self.roughness[0].min(self.roughness[1]))
+    }
+}
+
+/// The NDF at a half vector in the frame of the surface: see [`AnisotropicGgx::ndf`].
+#[inline(always)]
+pub(super) fn anisotropic_ndf<N: Single>([along, across]: [N; 2], half_vector: Vector3<N>) -> N {
+    let Vector3 { x, y, z } = half_vector;
+    let is_above = z.is_positive();
+    if N::is_known_false(is_above) {
+        return z.zero();
+    }
+    let (x, y) = (x / along, y / across);
+    let spread = (x * x + y * y + z * z) / half_vector.length_squared();
+    // At least 1 but for rounding, which can be all that is left of lengths that underflow.
+    let spread = spread.max(z.splat(1.0));
+    let ndf = z.splat(FRAC_1_PI) / (along * across) / spread / spread;
+    N::select(is_above, ndf, z.zero())
+}
+
+/// √(α_x²x² + α_y²y² + z²) for the unit vector `direction` = (x, y, z) in the frame of the surface: the root
+/// of Smith's masking functions. At one height z it lies between those of the lesser and of the greater
+/// roughness.
+#[inline(always)]
+pub(super) fn anisotropic_masking_root<N: Real>(
+    [along, across]: [N; 2],
+    direction: Vector3<N>,
+) -> N {
+    Vector3::new(along * direction.x, across * direction.y, direction.z).length()
+}

@@ -1,0 +1,246 @@
+use glam::Vec3;
+
+use super::anisotropic_ggx::{anisotropic_masking_root, anisotropic_ndf};
+use super::ggx_lobe::GgxLobes;
+use super::{AnisotropicGgx, Fresnel, GgxLobe, HeightCorrelated, Incidence, Lobe};
+use super::{MaskingShadowing, NoFresnel, Separable};
+use crate::base::{Direction, Error};
+use crate::num::{Matrix3, Real, Single, Vector3};
+
+/// The lobe of an [`AnisotropicGgx`] microsurface for light from one direction [Heitz 2014].
+///
+/// f·max(μ_o, 0) = F(ω_i·ω_h) G2(ω_i, ω_o) D(ω_h)/(4μ), with the [`Fresnel`] factor `F` and the
+/// [`MaskingShadowing`] function `G`. Empty, zero in every direction, if the light arrives from below
+/// the surface or along it.
+///
+/// ```
+/// use stochastic_light_culling::{
+///     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Direction, Incidence, Lobe, Schlick, glam::Vec3,
+/// };
+///
+/// let incoming = Direction::new(Vec3::new(-1.0, 0.0, 1.0))?;
+/// let incidence = Incidence { normal: Direction::Z, incoming };
+/// let (brushed, tangent) = (AnisotropicGgx::new(0.05, 0.3)?, Direction::X);
+/// let lobe = AnisotropicGgxLobe::new(brushed, Schlick::new(0.9)?, incidence, tangent)?;
+///
+/// // The highlight is wide across the tangent, along which the surface is smooth.
+/// let towards = |x, y| Direction::new(Vec3::new(x, y, 1.0)).map(Vec3::from);
+/// assert!(lobe.value(towards(1.0, 0.3)?) > lobe.value(towards(1.3, 0.0)?));
+///
+/// assert_eq!((lobe.ggx(), lobe.tangent()), (brushed, tangent));
+/// // No more than this leaves it of what arrives at facets that are lit.
+/// assert!(lobe.max_reflected() <= 1.0 && lobe.incident_cosine() > 0.7);
+/// assert!(lobe.separable().value(towards(1.0, 0.3)?) <= lobe.value(towards(1.0, 0.3)?));
+///
+/// let semi_axes = lobe.unit_bound().semi_axes();
+/// assert!(semi_axes.max_element() > 3.0 * semi_axes.min_element());
+/// // A tangent is needed to say which way is which.
+/// assert!(AnisotropicGgxLobe::new(brushed, Schlick::new(0.9)?, incidence, Direction::Z).is_err());
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AnisotropicGgxLobe<F = NoFresnel, G = HeightCorrelated> {
+    ggx: AnisotropicGgx,
+    /// As given.
+    tangent: Direction,
+    /// The tangent at right angles to n, and the bitangent.
+    tangent_axes: [Vec3; 2],
+    /// All that the azimuth of ω_o does not matter to: an isotropic lobe, of the lesser roughness, since
+    /// that has the largest G2 of any azimuth, but with this lobe's own root for ω_i.
+    at_any_azimuth: GgxLobe<F, G>,
+}
+
+impl<F: Fresnel> AnisotropicGgxLobe<F> {
+    /// The lobe of light that arrives with `incidence`, with height-correlated masking and shadowing.
+    ///
+    /// The surface has the roughness α_x along the part of `tangent` that is at right angles to n, of
+    /// either sign.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Vector`] if `tangent` is parallel to `normal`, or within 10⁻⁶ radians of that, where it
+    /// has no other part than rounding.
+    pub fn new(
+        ggx: AnisotropicGgx,
+        fresnel: F,
+        incidence: Incidence,
+        tangent: Direction,
+    ) -> Result<Self, Error> {
+        let Incidence { normal, incoming } = incidence;
+        let SurfaceAxes { axes, sine } = SurfaceAxes::new(normal.into(), tangent.into());
+        if sine < 1e-6 {
+            return Err(Error::Vector {
+                quantity: "tangent",
+                value: *tangent,
+                valid: "not parallel to the normal",
+            });
+        }
+        let isotropic = GgxLobe::new(ggx.smoother(), fresnel, incidence);
+        let at_any_azimuth = if ggx.is_isotropic() {
+            isotropic
+        } else {
+            let [x, y, z] = axes.map(|axis| axis.dot(unit(incoming.into())));
+            let roughness = ggx.roughness().map(f64::from);
+            let root = anisotropic_masking_root(roughness, Vector3::new(x, y, z));
+            isotropic.with_incident_root(root as f32)
+        };
+        let [along, across, _] = axes.map(|axis| Vec3::from(Vector3::narrow(axis)));
+        Ok(Self {
+            ggx,
+            tangent,
+            tangent_axes: [along, across],
+            at_any_azimuth,
+        })
+    }
+
+    /// The same lobe with [`Separable`] masking and shadowing.
+    pub fn separable(self) -> AnisotropicGgxLobe<F, Separable> {
+        self.with_masking()
+    }
+}
+
+impl<F: Fresnel, G> AnisotropicGgxLobe<F, G> {
+    /// The same lobe with masking and shadowing of the form `H`.
+    pub fn with_masking<H>(self) -> AnisotropicGgxLobe<F, H> {
+        let Self {
+            ggx,
+            tangent,
+            tangent_axes,
+            at_any_azimuth,
+        } = self;
+        AnisotropicGgxLobe {
+            ggx,
+            tangent,
+            tangent_axes,
+            at_any_azimuth: at_any_azimuth.with_masking(),
+        }
+    }
+
+    /// The microsurface.
+    pub fn ggx(&self) -> AnisotropicGgx {
+        self.ggx
+    }
+
+    /// n, the surface normal.
+    pub fn normal(&self) -> Direction {
+        self.at_any_azimuth.normal()
+    }
+
+    /// The tangent, as it was given: not at right angles to n if it was not.
+    pub fn tangent(&self) -> Direction {
+        self.tangent
+    }
+
+    /// ω_i, the direction that light comes from.
+    pub fn incoming(&self) -> Direction {
+        self.at_any_azimuth.incoming()
+    }
+
+    /// μ = ω_i·n in \[0, 1\]; 0 means that the lobe is empty.
+    pub fn incident_cosine(&self) -> f32 {
+        self.at_any_azimuth.incident_cosine()
+    }
+
+    /// ω_u = 2μn − ω_i, the direction of mirror reflection.
+    pub fn mirror_direction(&self) -> Direction {
+        self.at_any_azimuth.mirror_direction()
+    }
+
+    /// F, the Fresnel factor.
+    pub fn fresnel(&self) -> &F {
+        self.at_any_azimuth.fresnel()
+    }
+
+    /// An isotropic lobe with the same normal, ω_i, F and G1(ω_i), whose G2 is nowhere below this one's;
+    /// the same lobe altogether if α_x = α_y.
+    pub(crate) fn at_any_azimuth(&self) -> &GgxLobe<F, G> {
+        &self.at_any_azimuth
+    }
+}
+
+/// The frame of a surface with a grain.
+#[derive(Clone, Copy)]
+pub(crate) struct SurfaceAxes<D> {
+    /// The unit vectors along the tangent, at right angles to n, the bitangent n × tangent, and n.
+    pub axes: [Vector3<D>; 3],
+    /// The sine of the angle between the tangent as given and n; next to zero there is no frame.
+    pub sine: D,
+}
+
+impl<D: Real<Element = f64>> SurfaceAxes<D> {
+    #[inline(always)]
+    pub fn new<N: Single<Double = D>>(normal: Vector3<N>, tangent: Vector3<N>) -> Self {
+        let across = normal.widen().cross(tangent.widen());
+        let sine = across.length();
+        let across = divided(across, sine);
+        let normal = unit(normal);
+        Self {
+            axes: [across.cross(normal), across, normal],
+            sine,
+        }
+    }
+}
+
+/// The vector of unit length along `direction`, in double precision.
+#[inline(always)]
+pub(crate) fn unit<N: Single>(direction: Vector3<N>) -> Vector3<N::Double> {
+    let direction = direction.widen();
+    divided(direction, direction.length())
+}
+
+#[inline(always)]
+fn divided<D: Real>(v: Vector3<D>, length: D) -> Vector3<D> {
+    Vector3::new(v.x / length, v.y / length, v.z / length)
+}
+
+impl<F: Fresnel, G: MaskingShadowing> AnisotropicGgxLobe<F, G> {
+    /// An upper bound of F·G2/G1(ω_i) over all directions above the surface, as
+    /// [`GgxLobe::max_reflected`].
+    pub fn max_reflected(&self) -> f32 {
+        self.at_any_azimuth.max_reflected()
+    }
+}
+
+impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
+    #[inline]
+    fn value(&self, outgoing: Vec3) -> f32 {
+        let [along, across] = self.tangent_axes.map(Vector3::from);
+        let normal = Vector3::from(self.normal());
+        anisotropic_value::<f32, F, G>(
+            &self.at_any_azimuth.lanes(),
+            self.ggx.roughness(),
+            Matrix3::new(along, across, normal).transpose(),
+            &[*self.fresnel()],
+            outgoing.into(),
+        )
+    }
+
+    fn horizon_normal(&self) -> Option<Direction> {
+        Some(self.normal())
+    }
+
+    #[inline]
+    fn is_empty(&self) -> bool {
+        self.at_any_azimuth.is_empty()
+    }
+}
+
+/// f·max(μ_o, 0) towards `outgoing`, of the lobe that is `at_any_azimuth` but for its azimuth;
+/// `to_surface_frame` is the rotation from world space to (tangent, bitangent, n).
+#[inline(always)]
+fn anisotropic_value<N: Single, F: Fresnel, G: MaskingShadowing>(
+    at_any_azimuth: &GgxLobes<N>,
+    roughness: [N; 2],
+    to_surface_frame: Matrix3<N>,
+    fresnels: &[F],
+    outgoing: Vector3<N>,
+) -> N {
+    at_any_azimuth.value_with::<F, G>(
+        fresnels,
+        outgoing,
+        #[inline(always)]
+        |half_vector| anisotropic_ndf(roughness, to_surface_frame * half_vector),
+        #[inline(always)]
+        |_| anisotropic_masking_root(roughness, to_surface_frame * outgoing),
+    )
+}

@@ -1,0 +1,102 @@
+use super::fresnel::quasi_convex_maximum;
+use super::{Fresnel, FresnelMajorant};
+use crate::base::{Error, number_in};
+use crate::num::Single;
+
+/// Unpolarised light at a smooth interface between two transparent media
+/// [Tokuyoshi & Harada 2017, supplemental Eqs. 3–5].
+///
+/// With c = cosθ_h, s = sinθ_h and w = √(η² − s²), both amplitudes share the factor
+/// (c − w)/(c + w) = (1 − η²)/(c + w)², whose right-hand side does not cancel for η near 1, and
+///
+/// F = ½ ((1 − η²)/(c + w)²)² (1 + ((cw − s²)/(cw + s²))²).
+///
+/// F increases with θ_h for 2 − √3 ≤ η ≤ 2 + √3, and is quasi-convex for all other η.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dielectric {
+    relative_index: f32,
+    majorant: FresnelMajorant,
+}
+
+impl Dielectric {
+    /// An interface with `relative_index` = η = n_t/n_i: the refractive index of the medium behind
+    /// it over that of the medium which the light arrives in. 1.5 for glass seen from air, 1/1.5
+    /// from within, where light past the critical angle is reflected totally.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `relative_index` is outside \[10⁻⁹, 10⁹\] or NaN.
+    pub fn new(relative_index: f32) -> Result<Self, Error> {
+        number_in(
+            "relative refractive index η",
+            relative_index,
+            "in [1e-9, 1e9]",
+            1e-9..=1e9,
+        )
+        .map(|relative_index| Self {
+            relative_index,
+            majorant: FresnelMajorant::of(|cosine| reflectance(relative_index, cosine)),
+        })
+    }
+
+    /// η, the relative refractive index.
+    pub fn relative_index(&self) -> f32 {
+        self.relative_index
+    }
+}
+
+impl Fresnel for Dielectric {
+    #[inline]
+    fn reflectance(&self, half_angle_cosine: f32) -> f32 {
+        reflectance(self.relative_index, half_angle_cosine)
+    }
+
+    #[inline]
+    fn majorant(&self) -> FresnelMajorant {
+        self.majorant
+    }
+
+    #[inline(always)]
+    fn reflectance_in_lanes<N: Single>(fresnels: &[Self], half_angle_cosine: N) -> N {
+        let index = half_angle_cosine.gather(
+            #[inline(always)]
+            |i| fresnels[i].relative_index,
+        );
+        reflectance(index, half_angle_cosine)
+    }
+
+    #[inline(always)]
+    fn maximum_in_lanes<N: Single>(fresnels: &[Self], smallest_cosine: N) -> N {
+        quasi_convex_maximum(
+            #[inline(always)]
+            |cosine| Self::reflectance_in_lanes(fresnels, cosine),
+            smallest_cosine,
+        )
+    }
+}
+
+#[inline(always)]
+fn reflectance<N: Single>(eta: N, c: N) -> N {
+    let w_squared = index_squared_less_sine_squared(eta, c);
+    let is_total = w_squared.le(w_squared.zero());
+    if N::is_known_false(!is_total) {
+        return c.splat(1.0);
+    }
+    let w = w_squared.sqrt();
+    let s_squared = c.one_minus() * (c + 1.0);
+    let amplitude = (eta.one_minus() / (c + w)) * ((eta + 1.0) / (c + w));
+    let polarisation = (c * w - s_squared) / (c * w + s_squared);
+    let partial = amplitude * 0.5 * amplitude * (polarisation * polarisation + 1.0);
+    N::select(is_total, c.splat(1.0), partial.min(c.splat(1.0)))
+}
+
+/// η² − s² for s² = 1 − c², with an error of a few roundings of the lesser of s² and c², which at the
+/// critical angle decides.
+#[inline(always)]
+pub(super) fn index_squared_less_sine_squared<N: Single>(eta: N, c: N) -> N {
+    N::select(
+        (c * c).gt(c.splat(0.5)),
+        eta * eta - c.one_minus() * (c + 1.0),
+        c * c + (eta - 1.0) * (eta + 1.0),
+    )
+}

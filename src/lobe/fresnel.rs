@@ -1,0 +1,244 @@
+use crate::base::{Error, number_in};
+use crate::num::{Real, Single, round_down, round_up};
+
+/// What a maximum of F is at least said to be: less can have underflowed, and its products with other
+/// terms would be subnormal.
+pub(super) const LEAST_REFLECTED: f32 = 1e-30;
+
+/// The share of light that a smooth interface reflects, F.
+///
+/// An implementation must be quasi-convex in the angle, that is, fall and then rise, or only one of
+/// both: [`maximum`](Fresnel::maximum) rests on it.
+///
+/// ```
+/// use stochastic_light_culling::{Direction, Fresnel, FresnelMajorant, Ggx, GgxLobe, Incidence};
+///
+/// /// A coat over a base of one reflectance: F0 = 0.04 and all of the light at grazing.
+/// #[derive(Clone, Copy)]
+/// struct Coat(f32);
+///
+/// impl Fresnel for Coat {
+///     fn reflectance(&self, half_angle_cosine: f32) -> f32 {
+///         self.0.max(0.04 + 0.96 * (1.0 - half_angle_cosine).powi(5))
+///     }
+///
+///     // Without this the tight bound would follow the largest F, which is 1.
+///     fn majorant(&self) -> FresnelMajorant {
+///         FresnelMajorant { base: self.0.max(0.04), rise: 0.96 }
+///     }
+/// }
+///
+/// let lobe = GgxLobe::new(Ggx::new(0.3)?, Coat(0.2), Incidence::head_on(Direction::Z));
+/// assert!(lobe.max_fresnel() < 0.21);
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+pub trait Fresnel: Copy + 'static {
+    /// F in \[0, 1\] for cosθ_h = ω_i·ω_h in \[0, 1\].
+    fn reflectance(&self, half_angle_cosine: f32) -> f32;
+
+    /// An upper bound, tight to rounding, of F over all half angles from zero to the one whose cosine
+    /// is `smallest_cosine` in \[0, 1\].
+    ///
+    /// A quasi-convex F is largest at one of the two ends
+    /// [Tokuyoshi & Harada 2017, supplemental Eq. 6]. Never below 10⁻³⁰.
+    #[inline]
+    fn maximum(&self, smallest_cosine: f32) -> f32 {
+        quasi_convex_maximum(|cosine| self.reflectance(cosine), smallest_cosine)
+    }
+
+    /// An upper bound of F, of Schlick's form, which the [tight bound](crate::Tight)
+    /// follows. The closer it is, the smaller that bound; it need not be below 1.
+    ///
+    /// Unless it is implemented, the largest F at all angles.
+    fn majorant(&self) -> FresnelMajorant {
+        FresnelMajorant {
+            base: self.maximum(0.0),
+            rise: 0.0,
+        }
+    }
+
+    /// [`reflectance`](Self::reflectance) of one factor in each lane.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn reflectance_in_lanes<N: Single>(fresnels: &[Self], half_angle_cosine: N) -> N {
+        N::per_lane(
+            [half_angle_cosine],
+            #[inline(always)]
+            |i, [cosine]| fresnels[i].reflectance(cosine),
+        )
+    }
+
+    /// [`maximum`](Self::maximum) of one factor in each lane.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn maximum_in_lanes<N: Single>(fresnels: &[Self], smallest_cosine: N) -> N {
+        N::per_lane(
+            [smallest_cosine],
+            #[inline(always)]
+            |i, [cosine]| fresnels[i].maximum(cosine),
+        )
+    }
+}
+
+/// An upper bound of a quasi-convex F: see [`Fresnel::maximum`].
+#[inline(always)]
+pub(super) fn quasi_convex_maximum<N: Single>(
+    reflectance: impl Fn(N) -> N,
+    smallest_cosine: N,
+) -> N {
+    // Powers of smaller cosines underflow.
+    let is_tiny = smallest_cosine.splat(1e-15).gt(smallest_cosine);
+    let rounded = smallest_cosine * round_down(1.0, 16);
+    let smallest_cosine = N::select(is_tiny, smallest_cosine.zero(), rounded);
+    let head_on = reflectance(smallest_cosine.splat(1.0));
+    let grazing = reflectance(smallest_cosine);
+    let most = grazing.max(head_on).round_up(64);
+    most.max(most.splat(LEAST_REFLECTED)).min(most.splat(1.0))
+}
+
+/// base + rise (1 − cosθ_h)⁵, at least F for every cosθ_h in \[0, 1\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FresnelMajorant {
+    /// Its value head-on, at least 10⁻³⁰.
+    pub base: f32,
+    /// Not negative.
+    pub rise: f32,
+}
+
+impl FresnelMajorant {
+    /// The closest of some that bound `reflectance`, which must be quasi-convex, in the mean of its
+    /// quotient with it.
+    ///
+    /// Between two cosines F is at most the larger of its values there, and the majorant at least its
+    /// value at the larger cosine.
+    pub(super) fn of(reflectance: impl Fn(f32) -> f32) -> Self {
+        const STEPS: usize = 64;
+        let cosine = |i: usize| i as f32 / STEPS as f32;
+        let rises: [f32; STEPS + 1] = core::array::from_fn(|i| (1.0 - cosine(i)).fifth_power());
+        let values: [f32; STEPS + 1] =
+            core::array::from_fn(|i| round_up(reflectance(cosine(i)), 64));
+        let most = values.into_iter().fold(LEAST_REFLECTED, f32::max).min(1.0);
+        let mut best = (
+            f32::INFINITY,
+            Self {
+                base: most,
+                rise: 0.0,
+            },
+        );
+        // Shapes 1 + rise (1 − c)⁵, from the steepest that is of use to none at all.
+        let mut rise = 256.0;
+        while rise > 0.01 {
+            let shape = |i: usize| 1.0 + rise * rises[i];
+            let base = (0..STEPS)
+                .map(|i| values[i].max(values[i + 1]).min(1.0) / shape(i + 1))
+                .fold(LEAST_REFLECTED, f32::max);
+            let base = round_up(base, 8);
+            let excess: f32 = (0..=STEPS)
+                .map(|i| base * shape(i) / values[i].max(1e-3))
+                .sum();
+            if excess < best.0 {
+                best = (
+                    excess,
+                    Self {
+                        base,
+                        rise: round_up(base * rise, 2),
+                    },
+                );
+            }
+            rise *= 0.7;
+        }
+        best.1
+    }
+}
+
+/// No Fresnel factor, F = 1: all light is reflected. Costs nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct NoFresnel;
+
+impl Fresnel for NoFresnel {
+    #[inline]
+    fn reflectance(&self, _half_angle_cosine: f32) -> f32 {
+        1.0
+    }
+
+    #[inline]
+    fn maximum(&self, _smallest_cosine: f32) -> f32 {
+        1.0
+    }
+
+    #[inline(always)]
+    fn reflectance_in_lanes<N: Single>(_: &[Self], half_angle_cosine: N) -> N {
+        half_angle_cosine.splat(1.0)
+    }
+
+    #[inline(always)]
+    fn maximum_in_lanes<N: Single>(_: &[Self], smallest_cosine: N) -> N {
+        smallest_cosine.splat(1.0)
+    }
+
+    #[inline]
+    fn majorant(&self) -> FresnelMajorant {
+        FresnelMajorant {
+            base: 1.0,
+            rise: 0.0,
+        }
+    }
+}
+
+/// Schlick's approximation F = F0 + (1 − F0)(1 − cosθ_h)⁵ [Schlick 1994, Eq. 15].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Schlick {
+    f0: f32,
+}
+
+impl Schlick {
+    /// The approximation with reflectance `f0` at normal incidence: about 0.04 for plastic and
+    /// glass, 0.5 to 0.98 for metals.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `f0` is outside \[0, 1\] or NaN.
+    pub fn new(f0: f32) -> Result<Self, Error> {
+        number_in("reflectance F0", f0, "in [0, 1]", 0.0..=1.0).map(|f0| Self { f0 })
+    }
+
+    /// F0, the reflectance at normal incidence.
+    pub fn f0(&self) -> f32 {
+        self.f0
+    }
+}
+
+impl Fresnel for Schlick {
+    #[inline]
+    fn reflectance(&self, half_angle_cosine: f32) -> f32 {
+        Self::reflectance_in_lanes(&[*self], half_angle_cosine)
+    }
+
+    #[inline(always)]
+    fn reflectance_in_lanes<N: Single>(fresnels: &[Self], half_angle_cosine: N) -> N {
+        let f0 = half_angle_cosine.gather(
+            #[inline(always)]
+            |i| fresnels[i].f0,
+        );
+        f0 + f0.one_minus() * half_angle_cosine.one_minus().fifth_power()
+    }
+
+    #[inline(always)]
+    fn maximum_in_lanes<N: Single>(fresnels: &[Self], smallest_cosine: N) -> N {
+        quasi_convex_maximum(
+            #[inline(always)]
+            |cosine| Self::reflectance_in_lanes(fresnels, cosine),
+            smallest_cosine,
+        )
+    }
+
+    #[inline]
+    fn majorant(&self) -> FresnelMajorant {
+        FresnelMajorant {
+            base: self.f0.max(LEAST_REFLECTED),
+            rise: round_up(1.0 - self.f0, 1),
+        }
+    }
+}

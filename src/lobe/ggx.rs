@@ -1,0 +1,129 @@
+use core::f32::consts::FRAC_1_PI;
+
+use glam::Vec3;
+
+use crate::base::{Error, number_in};
+use crate::num::{Single, Vector3};
+
+/// The GGX microsurface of roughness α: how its facets are distributed and how they mask each
+/// other [Walter et al. 2007; Trowbridge & Reitz 1975].
+///
+/// ```
+/// use stochastic_light_culling::Ggx;
+///
+/// let (satin, matt) = (Ggx::new(0.2)?, Ggx::new(0.8)?);
+/// assert!(satin.ndf(1.0) > matt.ndf(1.0) && satin.masking(0.1) > matt.masking(0.1));
+/// // A mirror has no lobe, and what comes nearest to one has a narrow lobe.
+/// assert!(Ggx::new(0.0).is_err() && Ggx::new(Ggx::MIN_ROUGHNESS).is_ok());
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ggx {
+    roughness: f32,
+}
+
+impl Ggx {
+    /// The least roughness accepted, 2⁻²⁰ ≈ 9.5·10⁻⁷. Below it the lobe is narrower than the
+    /// spacing of `f32` directions.
+    pub const MIN_ROUGHNESS: f32 = 9.536_743e-7;
+
+    /// A microsurface with `roughness` = α; most engines show artists √α, the *perceptual*
+    /// roughness.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `roughness` is outside \[[`Self::MIN_ROUGHNESS`], 1\] or NaN. A perfect
+    /// mirror, α = 0, has no radiant intensity to bound.
+    pub fn new(roughness: f32) -> Result<Self, Error> {
+        number_in(
+            "roughness α",
+            roughness,
+            "in (0, 1], and at least 2⁻²⁰",
+            Self::MIN_ROUGHNESS..=1.0,
+        )
+        .map(|roughness| Self { roughness })
+    }
+
+    /// The microsurface of a roughness that is known to be in range.
+    pub(super) fn of_valid(roughness: f32) -> Self {
+        debug_assert!((Self::MIN_ROUGHNESS..=1.0).contains(&roughness));
+        Self { roughness }
+    }
+
+    /// α.
+    pub fn roughness(self) -> f32 {
+        self.roughness
+    }
+
+    /// The NDF D(cosθ_m) in sr⁻¹: the area of microfacets per solid angle of their normals
+    /// [Tokuyoshi & Harada 2017, Eq. 7].
+    ///
+    /// `cosine` = cosθ_m in \[−1, 1\]; zero for cosθ_m ≤ 0 and NaN. The largest value, 1/(πα²), is
+    /// at cosθ_m = 1. A rounded cosine cannot resolve a lobe narrower than about 10⁻³ radians:
+    /// where the half vector is known, use [`ndf_at`](Self::ndf_at).
+    pub fn ndf(self, cosine: f32) -> f32 {
+        if cosine > 0.0 {
+            let sine_squared = (1.0 - cosine) * (1.0 + cosine);
+            ndf_of_squares(self.roughness, cosine * cosine, sine_squared, 1.0)
+        } else {
+            0.0
+        }
+    }
+
+    /// The NDF in sr⁻¹ at `half_vector`, of any finite length, on a surface with unit `normal`.
+    ///
+    /// As accurate as the vectors themselves: sin²θ_m comes from their cross product, not from
+    /// 1 − cos²θ_m. Zero at and below the horizon, and for NaN.
+    #[inline]
+    pub fn ndf_at(self, half_vector: Vec3, normal: Vec3) -> f32 {
+        ndf_at(self.roughness, half_vector.into(), normal.into())
+    }
+
+    /// Smith's masking function G1(μ) = 2μ/(μ + √(kμ² + α²)), k = 1 − α²
+    /// [Tokuyoshi & Harada 2017, Eq. 8]: the visible share of the facets that face the viewer.
+    ///
+    /// In \[0, 1\] for `cosine` = μ in (0, 1]; zero for μ ≤ 0 and NaN.
+    pub fn masking(self, cosine: f32) -> f32 {
+        if cosine > 0.0 {
+            2.0 * cosine / (cosine + masking_root(self.roughness, cosine))
+        } else {
+            0.0
+        }
+    }
+}
+
+/// The NDF for a half vector and a unit normal: see [`Ggx::ndf_at`].
+#[inline(always)]
+pub(super) fn ndf_at<N: Single>(roughness: N, half_vector: Vector3<N>, normal: Vector3<N>) -> N {
+    let cosine = half_vector.dot(normal);
+    let is_above = cosine.is_positive();
+    if N::is_known_false(is_above) {
+        return cosine.zero();
+    }
+    let sine_squared = half_vector.cross(normal).length_squared();
+    let length_squared = half_vector.length_squared();
+    let ndf = ndf_of_squares(roughness, cosine * cosine, sine_squared, length_squared);
+    N::select(is_above, ndf, cosine.zero())
+}
+
+/// D = α²/(π (α²c² + s²)²), c² and s² given as shares of `length_squared`.
+#[inline(always)]
+fn ndf_of_squares<N: Single>(
+    roughness: N,
+    cosine_squared: N,
+    sine_squared: N,
+    length_squared: N,
+) -> N {
+    let alpha_squared = roughness * roughness;
+    let spread = (alpha_squared * cosine_squared + sine_squared) / length_squared;
+    // At least α² but for rounding, which can be all that is left of lengths that underflow.
+    let spread = spread.max(alpha_squared);
+    alpha_squared / spread * FRAC_1_PI / spread
+}
+
+/// √(kμ² + α²), k = 1 − α²: the root of Smith's masking functions, in \[α, 1\].
+#[inline(always)]
+pub(super) fn masking_root<N: Single>(roughness: N, cosine: N) -> N {
+    let alpha = roughness;
+    (alpha.one_minus() * (alpha + 1.0) * cosine * cosine + alpha * alpha).sqrt()
+}

@@ -1,0 +1,72 @@
+use core::f32::consts::FRAC_1_PI;
+
+use glam::Vec3;
+
+use super::Lobe;
+use crate::base::{Direction, Error, number_in};
+use crate::num::{Single, Vector3, sqrt};
+
+/// Lambert's lobe: the same radiance in every direction, f = ρ/π.
+///
+/// ```
+/// use stochastic_light_culling::{Direction, LambertLobe, Lobe, glam::Vec3};
+///
+/// let chalk = LambertLobe::new(0.9, Direction::Z)?;
+/// assert!((chalk.value(Vec3::Z) - 0.9 / std::f32::consts::PI).abs() < 1e-6);
+/// assert_eq!(chalk.value(-Vec3::Z), 0.0);
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LambertLobe {
+    albedo: f32,
+    /// √ρ, which every bound starts from.
+    albedo_root: f32,
+    normal: Direction,
+}
+
+impl LambertLobe {
+    /// The lobe of a surface that reflects the share `albedo` = ρ of the light, around `normal`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `albedo` is outside \[0, 1\] or NaN.
+    pub fn new(albedo: f32, normal: Direction) -> Result<Self, Error> {
+        number_in("albedo", albedo, "in [0, 1]", 0.0..=1.0).map(|albedo| Self {
+            albedo,
+            albedo_root: sqrt(albedo),
+            normal,
+        })
+    }
+
+    /// The share of light reflected, ρ.
+    pub fn albedo(&self) -> f32 {
+        self.albedo
+    }
+
+    /// √ρ
+    pub(crate) fn albedo_root(&self) -> f32 {
+        self.albedo_root
+    }
+
+    /// The surface normal n.
+    pub fn normal(&self) -> Direction {
+        self.normal
+    }
+}
+
+impl Lobe for LambertLobe {
+    #[inline]
+    fn value(&self, outgoing: Vec3) -> f32 {
+        lambert(self.albedo, self.normal.into(), outgoing.into())
+    }
+
+    fn horizon_normal(&self) -> Option<Direction> {
+        Some(self.normal)
+    }
+}
+
+/// ρ/π max(ω_o·n, 0)
+#[inline(always)]
+pub(crate) fn lambert<N: Single>(albedo: N, normal: Vector3<N>, outgoing: Vector3<N>) -> N {
+    albedo * FRAC_1_PI * normal.dot(outgoing).max(albedo.zero())
+}

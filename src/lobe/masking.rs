@@ -1,0 +1,169 @@
+use super::Ggx;
+use super::ggx::masking_root;
+use crate::num::Single;
+
+/// Smith's masking-shadowing function G2: the share of facets that are both lit and seen.
+///
+/// A type parameter, so that the form an engine shades with is the form its lights are culled by.
+/// Every form is at most G1(μ_i), grows with μ_o and falls with its root, which the bounds rely on.
+///
+/// ```
+/// use stochastic_light_culling::{Ggx, HeightCorrelated, MaskingShadowing, Separable};
+///
+/// let (rough, lit, seen) = (Ggx::new(0.8)?, 0.3, 0.2);
+/// let together = HeightCorrelated::masking_shadowing(rough, lit, seen);
+/// let by_chance = Separable::masking_shadowing(rough, lit, seen);
+/// assert!(by_chance < together && together < rough.masking(lit));
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+pub trait MaskingShadowing: Copy + 'static {
+    /// Whether G2 is nowhere above the [height-correlated](HeightCorrelated) form. The table of the
+    /// [tight bound](crate::Tight) holds for such forms alone; for others that strategy gives the
+    /// [triaxial bound](crate::Triaxial).
+    const IS_AT_MOST_HEIGHT_CORRELATED: bool = false;
+
+    /// G2(μ_i, μ_o)/(4μ_i): what a microfacet BRDF times μ_o has besides F and D.
+    ///
+    /// Finite for cosines in (0, 1], however close to grazing. The `root`s are √(kμ² + α²) of the
+    /// two cosines; of a direction (x, y, z) over a grain, √(α_x²x² + α_y²y² + z²).
+    ///
+    /// ```
+    /// use stochastic_light_culling::MaskingShadowing;
+    ///
+    /// /// No facet shadows another: G2 = G1(μ_i).
+    /// #[derive(Clone, Copy)]
+    /// struct MaskedAlone;
+    ///
+    /// impl MaskingShadowing for MaskedAlone {
+    ///     fn over_four_incident_cosines(cosine: f32, root: f32, _: f32, _: f32) -> f32 {
+    ///         0.5 / (cosine + root)
+    ///     }
+    /// }
+    /// assert_eq!(MaskedAlone::over_four_incident_cosines(1.0, 1.0, 1.0, 1.0), 0.25);
+    /// ```
+    fn over_four_incident_cosines(
+        incident_cosine: f32,
+        incident_root: f32,
+        outgoing_cosine: f32,
+        outgoing_root: f32,
+    ) -> f32;
+
+    /// [`over_four_incident_cosines`](Self::over_four_incident_cosines) in each lane.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn over_four_incident_cosines_in_lanes<N: Single>(
+        incident_cosine: N,
+        incident_root: N,
+        outgoing_cosine: N,
+        outgoing_root: N,
+    ) -> N {
+        N::per_lane(
+            [
+                incident_cosine,
+                incident_root,
+                outgoing_cosine,
+                outgoing_root,
+            ],
+            #[inline(always)]
+            |_,
+             [
+                incident_cosine,
+                incident_root,
+                outgoing_cosine,
+                outgoing_root,
+            ]| {
+                Self::over_four_incident_cosines(
+                    incident_cosine,
+                    incident_root,
+                    outgoing_cosine,
+                    outgoing_root,
+                )
+            },
+        )
+    }
+
+    /// G2 in \[0, 1\], for the cosines ω_i·n and ω_o·n; zero if either is not positive.
+    fn masking_shadowing(ggx: Ggx, incident_cosine: f32, outgoing_cosine: f32) -> f32 {
+        if !(incident_cosine > 0.0 && outgoing_cosine > 0.0) {
+            return 0.0;
+        }
+        4.0 * incident_cosine
+            * Self::over_four_incident_cosines(
+                incident_cosine,
+                masking_root(ggx.roughness(), incident_cosine),
+                outgoing_cosine,
+                masking_root(ggx.roughness(), outgoing_cosine),
+            )
+    }
+}
+
+/// Facets of one height are masked and shadowed together
+/// G2 = 2μ_iμ_o/(μ_o√(kμ_i²+α²) + μ_i√(kμ_o²+α²)) [Heitz 2014, Eq. 99].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct HeightCorrelated;
+
+impl MaskingShadowing for HeightCorrelated {
+    const IS_AT_MOST_HEIGHT_CORRELATED: bool = true;
+
+    #[inline]
+    fn over_four_incident_cosines(
+        incident_cosine: f32,
+        incident_root: f32,
+        outgoing_cosine: f32,
+        outgoing_root: f32,
+    ) -> f32 {
+        Self::over_four_incident_cosines_in_lanes(
+            incident_cosine,
+            incident_root,
+            outgoing_cosine,
+            outgoing_root,
+        )
+    }
+
+    #[inline(always)]
+    fn over_four_incident_cosines_in_lanes<N: Single>(
+        incident_cosine: N,
+        incident_root: N,
+        outgoing_cosine: N,
+        outgoing_root: N,
+    ) -> N {
+        let sum = outgoing_cosine * incident_root + incident_cosine * outgoing_root;
+        // Both terms can underflow at once, with the numerator far behind.
+        outgoing_cosine * 0.5 / sum.max(sum.splat(f32::MIN_POSITIVE))
+    }
+}
+
+/// Masking and shadowing as if independent, G2 = G1(μ_i) G1(μ_o) [Walter et al. 2007, Eq. 23].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Separable;
+
+impl MaskingShadowing for Separable {
+    const IS_AT_MOST_HEIGHT_CORRELATED: bool = true;
+
+    #[inline]
+    fn over_four_incident_cosines(
+        incident_cosine: f32,
+        incident_root: f32,
+        outgoing_cosine: f32,
+        outgoing_root: f32,
+    ) -> f32 {
+        Self::over_four_incident_cosines_in_lanes(
+            incident_cosine,
+            incident_root,
+            outgoing_cosine,
+            outgoing_root,
+        )
+    }
+
+    #[inline(always)]
+    fn over_four_incident_cosines_in_lanes<N: Single>(
+        incident_cosine: N,
+        incident_root: N,
+        outgoing_cosine: N,
+        outgoing_root: N,
+    ) -> N {
+        outgoing_cosine / ((incident_cosine + incident_root) * (outgoing_cosine + outgoing_root))
+    }
+}

@@ -1,0 +1,194 @@
+use core::f32::consts::TAU;
+
+use glam::Vec3;
+
+use super::{Incidence, Lobe};
+use crate::base::{Direction, Error, number_in};
+use crate::num::{self, Real, Single, Vector3, exact_dot};
+
+/// Phong's lobe: a power of the cosine to the mirror direction [Phong 1975].
+///
+/// f·max(μ_o, 0) = ρ (n+1)/(2π) max(ω_o·ω_u, 0)ⁿ above the surface and zero below it, for the exponent n
+/// and the mirror direction ω_u. The power stands for all of the left side, its cosine included. It
+/// integrates to 2π/(n+1) over the hemisphere about ω_u, so of the light that arrives the share ρ is
+/// reflected, less what the horizon cuts off: no energy is gained. Not reciprocal, as Phong's model is not.
+///
+/// The lobe of the virtual lights of [Dachsbacher & Stamminger 2006]. Empty, zero in every direction, if the
+/// light arrives from below the surface or along it.
+///
+/// ```
+/// use stochastic_light_culling::{Bounded, Direction, Incidence, Lobe, PhongLobe, glam::Vec3};
+///
+/// let incoming = Direction::new(Vec3::new(-1.0, 0.0, 1.0))?;
+/// let incidence = Incidence { normal: Direction::Z, incoming };
+/// let plastic = PhongLobe::new(0.5, 40.0, incidence)?;
+/// let peak = plastic.value(*plastic.axis());
+/// assert!((peak - 0.5 * 41.0 / std::f32::consts::TAU).abs() < 1e-4);
+/// assert!(plastic.value(Vec3::Z) < 1e-5 * peak);
+///
+/// // A slim ellipsoid from the light along the mirror direction.
+/// let semi_axes = plastic.unit_bound().semi_axes();
+/// assert!(semi_axes.x > 3.0 * semi_axes.y);
+///
+/// // A spotlight, with no surface to cut it.
+/// let spot = PhongLobe::about(1.0, 10.0, Direction::X)?;
+/// assert!(spot.incoming().is_none() && spot.exponent() < PhongLobe::MAX_EXPONENT);
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhongLobe {
+    albedo: f32,
+    exponent: f32,
+    normal: Direction,
+    incoming: Option<Direction>,
+    axis: Direction,
+    is_lit: bool,
+}
+
+impl PhongLobe {
+    /// The greatest exponent, 2²⁰: a lobe a tenth of a degree wide, of which directions in `f32` still
+    /// tell the inside.
+    pub const MAX_EXPONENT: f32 = 1_048_576.0;
+
+    /// The lobe of a surface that reflects the share `albedo` = ρ of light that arrives with `incidence`, with
+    /// `exponent` = n.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `albedo` is outside \[0, 1\], `exponent` outside
+    /// \[0, [`MAX_EXPONENT`](Self::MAX_EXPONENT)\], or either is NaN.
+    pub fn new(albedo: f32, exponent: f32, incidence: Incidence) -> Result<Self, Error> {
+        let Incidence { normal, incoming } = incidence;
+        Ok(Self {
+            albedo: number_in("albedo", albedo, "in [0, 1]", 0.0..=1.0)?,
+            exponent: number_in(
+                "Phong exponent",
+                exponent,
+                "in [0, 2²⁰]",
+                0.0..=Self::MAX_EXPONENT,
+            )?,
+            normal,
+            incoming: Some(incoming),
+            axis: incoming.mirrored(normal),
+            is_lit: exact_dot(Vector3::from(normal), incoming.into()) > 0.0,
+        })
+    }
+
+    /// The same lobe about any `axis`, without a surface that cuts it: a spotlight that sends the share
+    /// `albedo` of its flux. Zero from 90° off the axis on.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn about(albedo: f32, exponent: f32, axis: Direction) -> Result<Self, Error> {
+        let mirrored = Self::new(albedo, exponent, Incidence::head_on(axis))?;
+        Ok(Self {
+            incoming: None,
+            // Not mirrored at itself, which is a rounding away.
+            axis,
+            ..mirrored
+        })
+    }
+
+    /// The share of light reflected, ρ, but for what the horizon cuts off.
+    pub fn albedo(&self) -> f32 {
+        self.albedo
+    }
+
+    /// n, the exponent.
+    pub fn exponent(&self) -> f32 {
+        self.exponent
+    }
+
+    /// The surface normal; of a lobe [about](Self::about) an axis, that axis.
+    pub fn normal(&self) -> Direction {
+        self.normal
+    }
+
+    /// ω_i, the direction that light comes from; `None` of a lobe [about](Self::about) an axis.
+    pub fn incoming(&self) -> Option<Direction> {
+        self.incoming
+    }
+
+    /// ω_u, the direction in which the lobe is largest.
+    pub fn axis(&self) -> Direction {
+        self.axis
+    }
+
+    /// √(ρ(n+1)/(2π)), the radius of the unit isosurface along the axis; zero if the lobe is empty.
+    pub(crate) fn unit_reach(&self) -> f32 {
+        if self.is_lit {
+            // Apart, since the product with a subnormal albedo would be off by more than its root is.
+            num::sqrt(self.albedo) * num::sqrt((self.exponent + 1.0) / TAU)
+        } else {
+            0.0
+        }
+    }
+}
+
+impl Lobe for PhongLobe {
+    #[inline]
+    fn value(&self, outgoing: Vec3) -> f32 {
+        self.lanes().value(outgoing.into())
+    }
+
+    fn horizon_normal(&self) -> Option<Direction> {
+        self.incoming.map(|_| self.normal)
+    }
+
+    fn is_empty(&self) -> bool {
+        !self.is_lit
+    }
+}
+
+/// A [`PhongLobe`] in each lane.
+#[derive(Clone, Copy)]
+pub(crate) struct PhongLobes<N> {
+    pub normal: Vector3<N>,
+    /// ω_u
+    pub axis: Vector3<N>,
+    pub exponent: N,
+    /// ρ; zero of an empty lobe
+    pub albedo: N,
+}
+
+impl PhongLobe {
+    #[inline(always)]
+    fn lanes(&self) -> PhongLobes<f32> {
+        PhongLobes {
+            normal: self.normal.into(),
+            axis: self.axis.into(),
+            exponent: self.exponent,
+            albedo: if self.is_lit { self.albedo } else { 0.0 },
+        }
+    }
+}
+
+impl<N: Single> PhongLobes<N> {
+    /// The cosine is 1 − ½‖ω_o − ω_u‖² in `f64`, since a power multiplies by n the error of a cosine; and
+    /// what its rounding to `f32` takes is given back afterwards, (1 + x)ⁿ = 1 + nx + ½n²x² + …, nx < 2⁻⁵.
+    #[inline(always)]
+    pub fn value(&self, outgoing: Vector3<N>) -> N {
+        let zero = self.albedo.zero();
+        let apart = outgoing.widen() - self.axis.widen();
+        let half_squared = apart.length_squared() * 0.5;
+        let cosine = half_squared.splat(1.0) - half_squared;
+        let rounded = N::narrow(cosine);
+        let is_lit = self.albedo.is_positive()
+            & self.normal.dot(outgoing).is_positive()
+            & rounded.is_positive();
+        if N::is_known_false(is_lit) {
+            return zero;
+        }
+        let share = cosine / rounded.widen();
+        let lost = N::narrow(share - 1.0) * self.exponent;
+        let power = N::per_lane(
+            [rounded, self.exponent],
+            #[inline(always)]
+            |_, [cosine, exponent]| num::power(cosine, exponent),
+        );
+        let power = power * (lost * (lost * 0.5 + 1.0) + 1.0);
+        let value = self.albedo * ((self.exponent + 1.0) / zero.splat(TAU)) * power;
+        N::select(is_lit, value, zero)
+    }
+}

@@ -1,0 +1,48 @@
+//! Floating-point functions of the backend, `std` or `libm`. Only this file names one.
+
+#[cfg(not(any(feature = "std", feature = "libm")))]
+compile_error!(
+    "stochastic-light-culling needs a float backend: enable the feature `std` (default) or `libm`"
+);
+
+/// √x, correctly rounded on either backend.
+#[inline]
+pub(crate) fn sqrt(x: f32) -> f32 {
+    #[cfg(feature = "std")]
+    #[expect(clippy::disallowed_methods, reason = "this is the backend")]
+    let root = x.sqrt();
+    #[cfg(all(feature = "libm", not(feature = "std")))]
+    let root = libm::sqrtf(x);
+    root
+}
+
+/// √x, correctly rounded on either backend.
+#[inline]
+pub(crate) fn sqrt_f64(x: f64) -> f64 {
+    #[cfg(feature = "std")]
+    #[expect(clippy::disallowed_methods, reason = "this is the backend")]
+    let root = x.sqrt();
+    #[cfg(all(feature = "libm", not(feature = "std")))]
+    let root = libm::sqrt(x);
+    root
+}
+
+/// tan x, to the accuracy of the backend.
+pub(crate) fn tan(x: f32) -> f32 {
+    #[cfg(feature = "std")]
+    #[expect(clippy::disallowed_methods, reason = "this is the backend")]
+    let tangent = x.tan();
+    #[cfg(all(feature = "libm", not(feature = "std")))]
+    let tangent = libm::tanf(x);
+    tangent
+}
+
+/// x^y for x > 0, to the accuracy of the backend.
+pub(crate) fn power(x: f32, y: f32) -> f32 {
+    #[cfg(feature = "std")]
+    #[expect(clippy::disallowed_methods, reason = "this is the backend")]
+    let power = x.powf(y);
+    #[cfg(all(feature = "libm", not(feature = "std")))]
+    let power = libm::powf(x, y);
+    power
+}

@@ -1,0 +1,390 @@
+//! Vector registers as [`Real`] numbers.
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use fearless_simd::{
+    ExtractToken, MaskNarrow, MaskWiden, Select, Simd, SimdBase, SimdFloat, SimdMask, SimdNarrow,
+    SimdWiden,
+};
+
+use super::real::{Quad, Real, Single};
+
+/// Lanes of the widest vectors there are.
+pub(crate) const MAX_LANES: usize = 16;
+
+/// An `f32` in each lane.
+#[derive(Clone, Copy, Debug)]
+pub struct F32Lanes<S: Simd>(pub S::f32s);
+
+/// An `f64` in each lane: one vector for the lower half of the lanes, and one for the upper.
+#[derive(Clone, Copy, Debug)]
+pub struct F64Lanes<S: Simd> {
+    low: S::f64s,
+    high: S::f64s,
+}
+
+impl<S: Simd> F32Lanes<S> {
+    #[inline(always)]
+    pub fn new(simd: S, value: f32) -> Self {
+        Self(S::f32s::splat(simd, value))
+    }
+}
+
+/// Operators with as many lanes, and with one number for all of them.
+macro_rules! operators {
+    ($($operator:ident $function:ident $sign:tt,)*) => {$(
+        impl<S: Simd> $operator for F32Lanes<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                Self(self.0 $sign other.0)
+            }
+        }
+
+        impl<S: Simd> $operator for F64Lanes<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: Self) -> Self {
+                Self {
+                    low: self.low $sign other.low,
+                    high: self.high $sign other.high,
+                }
+            }
+        }
+
+        impl<S: Simd> $operator<f32> for F32Lanes<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: f32) -> Self {
+                Self(self.0 $sign other)
+            }
+        }
+
+        impl<S: Simd> $operator<f64> for F64Lanes<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $function(self, other: f64) -> Self {
+                Self {
+                    low: self.low $sign other,
+                    high: self.high $sign other,
+                }
+            }
+        }
+    )*};
+}
+
+operators! {
+    Add add +,
+    Sub sub -,
+    Mul mul *,
+    Div div /,
+}
+
+impl<S: Simd> Neg for F32Lanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl<S: Simd> Neg for F64Lanes<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self {
+            low: -self.low,
+            high: -self.high,
+        }
+    }
+}
+
+/// Whether the vector instructions for max and min give their second operand for NaN, as [`Real`] wants
+/// it. On other processors than x86 they give NaN.
+const NATIVE_MAX_PASSES_NAN_OVER: bool = cfg!(any(target_arch = "x86", target_arch = "x86_64"));
+
+#[inline(always)]
+fn max<S: Simd, V: SimdFloat<S>>(a: V, other: V) -> V {
+    if NATIVE_MAX_PASSES_NAN_OVER {
+        a.max(other)
+    } else {
+        a.simd_gt(other).select(a, other)
+    }
+}
+
+#[inline(always)]
+fn min<S: Simd, V: SimdFloat<S>>(a: V, other: V) -> V {
+    if NATIVE_MAX_PASSES_NAN_OVER {
+        a.min(other)
+    } else {
+        a.simd_lt(other).select(a, other)
+    }
+}
+
+impl<S: Simd> Real for F32Lanes<S> {
+    type Element = f32;
+    type Mask = S::mask32s;
+
+    #[inline(always)]
+    fn splat(self, value: f32) -> Self {
+        Self(S::f32s::splat(self.0.token(), value))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs())
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        Self(self.0.copysign(sign.0))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(max(self.0, other.0))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(min(self.0, other.0))
+    }
+
+    #[inline(always)]
+    fn gt(self, other: Self) -> S::mask32s {
+        self.0.simd_gt(other.0)
+    }
+
+    #[inline(always)]
+    fn le(self, other: Self) -> S::mask32s {
+        self.0.simd_le(other.0)
+    }
+
+    #[inline(always)]
+    fn eq(self, other: Self) -> S::mask32s {
+        self.0.simd_eq(other.0)
+    }
+
+    #[inline(always)]
+    fn is_finite(self) -> S::mask32s {
+        self.0.is_finite()
+    }
+
+    #[inline(always)]
+    fn select_all<const K: usize>(
+        mask: S::mask32s,
+        mut yes: [Self; K],
+        no: [Self; K],
+    ) -> [Self; K] {
+        for (yes, no) in yes.iter_mut().zip(no) {
+            yes.0 = mask.select(yes.0, no.0);
+        }
+        yes
+    }
+
+    #[inline(always)]
+    fn is_known_false(_: S::mask32s) -> bool {
+        false
+    }
+}
+
+impl<S: Simd> Real for F64Lanes<S> {
+    type Element = f64;
+    type Mask = S::mask32s;
+
+    #[inline(always)]
+    fn splat(self, value: f64) -> Self {
+        let value = S::f64s::splat(self.low.token(), value);
+        Self {
+            low: value,
+            high: value,
+        }
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self {
+            low: self.low.abs(),
+            high: self.high.abs(),
+        }
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self {
+            low: self.low.sqrt(),
+            high: self.high.sqrt(),
+        }
+    }
+
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        Self {
+            low: self.low.copysign(sign.low),
+            high: self.high.copysign(sign.high),
+        }
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self {
+            low: max(self.low, other.low),
+            high: max(self.high, other.high),
+        }
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self {
+            low: min(self.low, other.low),
+            high: min(self.high, other.high),
+        }
+    }
+
+    #[inline(always)]
+    fn gt(self, other: Self) -> S::mask32s {
+        let low = self.low.simd_gt(other.low);
+        low.narrow(self.high.simd_gt(other.high))
+    }
+
+    #[inline(always)]
+    fn le(self, other: Self) -> S::mask32s {
+        let low = self.low.simd_le(other.low);
+        low.narrow(self.high.simd_le(other.high))
+    }
+
+    #[inline(always)]
+    fn eq(self, other: Self) -> S::mask32s {
+        let low = self.low.simd_eq(other.low);
+        low.narrow(self.high.simd_eq(other.high))
+    }
+
+    #[inline(always)]
+    fn is_finite(self) -> S::mask32s {
+        self.low.is_finite().narrow(self.high.is_finite())
+    }
+
+    #[inline(always)]
+    fn select_all<const K: usize>(
+        mask: S::mask32s,
+        mut yes: [Self; K],
+        no: [Self; K],
+    ) -> [Self; K] {
+        let (low, high) = mask.widen();
+        for (yes, no) in yes.iter_mut().zip(no) {
+            yes.low = low.select(yes.low, no.low);
+            yes.high = high.select(yes.high, no.high);
+        }
+        yes
+    }
+
+    #[inline(always)]
+    fn is_known_false(_: S::mask32s) -> bool {
+        false
+    }
+}
+
+impl<S: Simd> Single for F32Lanes<S> {
+    type Double = F64Lanes<S>;
+
+    #[inline(always)]
+    fn widen(self) -> F64Lanes<S> {
+        let (low, high) = self.0.widen();
+        F64Lanes { low, high }
+    }
+
+    #[inline(always)]
+    fn narrow(double: F64Lanes<S>) -> Self {
+        Self(double.low.narrow(double.high))
+    }
+
+    #[inline(always)]
+    fn load(self, lanes: &[f32]) -> Self {
+        Self(S::f32s::from_slice(self.0.token(), &lanes[..S::f32s::LEN]))
+    }
+
+    #[inline(always)]
+    fn gather(self, mut function: impl FnMut(usize) -> f32) -> Self {
+        let mut lanes = [0.0; MAX_LANES];
+        for (i, lane) in lanes[..S::f32s::LEN].iter_mut().enumerate() {
+            *lane = function(i);
+        }
+        self.load(&lanes)
+    }
+
+    #[inline(always)]
+    fn per_lane<const K: usize>(
+        numbers: [Self; K],
+        mut function: impl FnMut(usize, [f32; K]) -> f32,
+    ) -> Self {
+        const { assert!(K > 0) }
+        let mut lanes = [[0.0; MAX_LANES]; K];
+        for (lanes, numbers) in lanes.iter_mut().zip(numbers) {
+            numbers.0.store_slice(&mut lanes[..S::f32s::LEN]);
+        }
+        numbers[0].gather(
+            #[inline(always)]
+            |i| {
+                let mut of_lane = [0.0; K];
+                for (number, lanes) in of_lane.iter_mut().zip(&lanes) {
+                    *number = lanes[i];
+                }
+                function(i, of_lane)
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn per_lane_quads(
+        numbers: Quad<Self>,
+        mask: S::mask32s,
+        mut function: impl FnMut(Quad<f32>, bool) -> [Quad<f32>; 2],
+    ) -> [Quad<Self>; 2] {
+        let (simd, mask) = (numbers[0].0.token(), mask.to_bitmask());
+        let mut lanes = [[0.0; MAX_LANES]; 4];
+        for (lanes, numbers) in lanes.iter_mut().zip(numbers) {
+            numbers.0.store_slice(&mut lanes[..S::f32s::LEN]);
+        }
+        let [a, b, c, d] = lanes;
+        let [mut first, mut second] = [[[0.0; 4]; MAX_LANES]; 2];
+        for i in 0..S::f32s::LEN {
+            [first[i], second[i]] = function([a[i], b[i], c[i], d[i]], mask >> i & 1 != 0);
+        }
+        [
+            load_quads(simd, &first[..S::f32s::LEN]),
+            load_quads(simd, &second[..S::f32s::LEN]),
+        ]
+    }
+}
+
+/// Transposes quads that are held light by light: one vector for each of their four numbers.
+#[inline(always)]
+pub(crate) fn load_quads<S: Simd>(simd: S, quads: &[Quad<f32>]) -> Quad<F32Lanes<S>> {
+    let (numbers, lanes) = (quads.as_flattened(), S::f32s::LEN);
+    // No array is mapped: the compiler makes that a call, through memory.
+    let a = S::f32s::from_slice(simd, &numbers[..lanes]);
+    let b = S::f32s::from_slice(simd, &numbers[lanes..2 * lanes]);
+    let c = S::f32s::from_slice(simd, &numbers[2 * lanes..3 * lanes]);
+    let d = S::f32s::from_slice(simd, &numbers[3 * lanes..4 * lanes]);
+    let [(first_and_third, second_and_fourth), (third, fourth)] =
+        [a.deinterleave(b), c.deinterleave(d)];
+    let (first, third) = first_and_third.deinterleave(third);
+    let (second, fourth) = second_and_fourth.deinterleave(fourth);
+    [
+        F32Lanes(first),
+        F32Lanes(second),
+        F32Lanes(third),
+        F32Lanes(fourth),
+    ]
+}

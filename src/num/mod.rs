@@ -1,0 +1,31 @@
+//! The arithmetic that all formulas are written in.
+//!
+//! A formula is one function, generic over [`Real`]. With an `f32` or an `f64` it computes one value; with
+//! [`F32Lanes`] or [`F64Lanes`] it computes as many as a vector register holds. The operations and their
+//! order are the same, and none is contracted to a fused one, so both give the same bits.
+//!
+//! # NaN
+//!
+//! The same for every implementor and on every processor:
+//!
+//! - `a.max(b)` and `a.min(b)` are `b` if either operand is NaN. Write the operand that is never NaN last.
+//! - Comparisons with NaN are false, so `!(a > b)` is true of NaN.
+//! - A NaN never stands for a flag; a [`Mask`] does.
+//!
+//! On an `f32` or an `f64` itself, outside of generic code, `max` and `min` are the inherent functions of the
+//! standard library, which give the operand that is not NaN.
+
+mod float;
+#[cfg(feature = "cull")]
+mod lanes;
+mod real;
+mod rounding;
+mod scalar;
+mod vector;
+
+pub(crate) use float::{power, sqrt, sqrt_f64, tan};
+#[cfg(feature = "cull")]
+pub(crate) use lanes::{F32Lanes, MAX_LANES, load_quads};
+pub(crate) use real::{Double, Quad, Real, Single};
+pub(crate) use rounding::{UNIT_ROUNDOFF, round_down, round_up};
+pub(crate) use vector::{Matrix3, Vector3, dot_f64, exact_dot};

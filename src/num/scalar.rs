@@ -1,0 +1,116 @@
+use super::real::{Quad, Real, Single};
+use super::{sqrt, sqrt_f64};
+
+macro_rules! real {
+    ($float:ty, $sqrt:path) => {
+        impl Real for $float {
+            type Element = Self;
+            type Mask = bool;
+
+            #[inline(always)]
+            fn splat(self, value: Self) -> Self {
+                value
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                Self::abs(self)
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                $sqrt(self)
+            }
+
+            #[inline(always)]
+            fn copysign(self, sign: Self) -> Self {
+                Self::copysign(self, sign)
+            }
+
+            // One instruction, unlike the inherent function.
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                if self > other { self } else { other }
+            }
+
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                if self < other { self } else { other }
+            }
+
+            #[inline(always)]
+            fn gt(self, other: Self) -> bool {
+                self > other
+            }
+
+            #[inline(always)]
+            fn le(self, other: Self) -> bool {
+                self <= other
+            }
+
+            #[inline(always)]
+            fn eq(self, other: Self) -> bool {
+                self == other
+            }
+
+            #[inline(always)]
+            fn is_finite(self) -> bool {
+                Self::is_finite(self)
+            }
+
+            #[inline(always)]
+            fn select_all<const K: usize>(mask: bool, yes: [Self; K], no: [Self; K]) -> [Self; K] {
+                if mask { yes } else { no }
+            }
+
+            #[inline(always)]
+            fn is_known_false(mask: bool) -> bool {
+                !mask
+            }
+        }
+    };
+}
+
+real!(f32, sqrt);
+real!(f64, sqrt_f64);
+
+impl Single for f32 {
+    type Double = f64;
+
+    #[inline(always)]
+    fn widen(self) -> f64 {
+        self.into()
+    }
+
+    #[inline(always)]
+    fn narrow(double: f64) -> Self {
+        double as Self
+    }
+
+    #[inline(always)]
+    fn load(self, lanes: &[Self]) -> Self {
+        lanes[0]
+    }
+
+    #[inline(always)]
+    fn gather(self, mut function: impl FnMut(usize) -> Self) -> Self {
+        function(0)
+    }
+
+    #[inline(always)]
+    fn per_lane<const K: usize>(
+        numbers: [Self; K],
+        mut function: impl FnMut(usize, [Self; K]) -> Self,
+    ) -> Self {
+        function(0, numbers)
+    }
+
+    #[inline(always)]
+    fn per_lane_quads(
+        numbers: Quad<Self>,
+        mask: bool,
+        mut function: impl FnMut(Quad<Self>, bool) -> [Quad<Self>; 2],
+    ) -> [Quad<Self>; 2] {
+        function(numbers, mask)
+    }
+}

@@ -1,0 +1,29 @@
+use super::projected::ProjectedLanes;
+use super::{Project, ProjectedEllipsoid};
+use crate::bound::{Ellipsoid, Spheroid, Spheroids};
+use crate::num::Single;
+use crate::view::Camera;
+
+impl Spheroid {
+    /// The spheroid in the space of `camera`, as a unit sphere; `None` if it is empty.
+    #[must_use]
+    pub fn project(&self, camera: &Camera) -> Option<ProjectedEllipsoid> {
+        Ellipsoid::from(*self).project(camera)
+    }
+}
+
+impl Project for Spheroid {
+    type Projected = ProjectedEllipsoid;
+
+    fn project(&self, camera: &Camera) -> Option<ProjectedEllipsoid> {
+        self.project(camera)
+    }
+
+    #[inline(always)]
+    fn project_lanes<N: Single>(
+        lanes: Spheroids<N>,
+        camera: &Camera,
+    ) -> ProjectedLanes<N, ProjectedEllipsoid> {
+        lanes.ellipsoids().projected(camera)
+    }
+}

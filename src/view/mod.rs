@@ -1,0 +1,15 @@
+//! What is seen: the camera, the tiles of its image, and the depths in them.
+
+mod camera;
+mod depth_interval;
+mod grid;
+mod interleave;
+mod rectangle;
+
+pub use camera::Camera;
+#[cfg(feature = "serde")]
+pub(crate) use camera::Parts;
+pub use depth_interval::DepthInterval;
+pub use grid::{PixelRectangle, TileGrid};
+pub use interleave::Interleave;
+pub use rectangle::TileRectangle;
