@@ -296,6 +296,61 @@ fn hashed_numbers_are_uniform() {
     }
 }
 
+/// Pairs of successive numbers fill the unit square evenly: along lights, along frames, and where frame and
+/// seed are equal, for any seed; 634785765 is the one that the hash's generator takes to zero.
+#[test]
+fn hashed_numbers_show_no_lattice() {
+    const SIDE: usize = 64;
+    const PAIRS: u32 = 1 << 16;
+    let even = |draw: &dyn Fn(u32) -> Xi, lag: u32| {
+        let bin = |i: u32| ((draw(i).get() * SIDE as f32) as usize).min(SIDE - 1);
+        let mut bins = vec![0.0; SIDE * SIDE];
+        for i in 0..PAIRS {
+            bins[bin(i) * SIDE + bin(i + lag)] += 1.0;
+        }
+        let expected = f64::from(PAIRS) / (SIDE * SIDE) as f64;
+        let chi_squared: f64 = bins
+            .iter()
+            .map(|n: &f64| (n - expected).powi(2) / expected)
+            .sum();
+        let freedom = (SIDE * SIDE - 1) as f64;
+        // In standard deviations: a lattice leaves bins empty, or fills them too evenly.
+        ((chi_squared - freedom) / (2.0 * freedom).sqrt()).abs() < 5.0
+    };
+    for seed in [
+        0,
+        1,
+        7,
+        2026,
+        634_785_764,
+        634_785_765,
+        634_785_766,
+        1 << 31,
+        u32::MAX,
+    ] {
+        for lag in [1, 2, 3, 8] {
+            for frame in [0, 1, 634_785_765, seed] {
+                let along_lights = |light| FrameSeed { frame, seed }.xi(light);
+                assert!(
+                    even(&along_lights, lag),
+                    "seed {seed}, frame {frame}, lag {lag}"
+                );
+            }
+            for light in [0, 1, 1000] {
+                let along_frames = |frame| FrameSeed { frame, seed }.xi(light);
+                assert!(
+                    even(&along_frames, lag),
+                    "seed {seed}, light {light}, lag {lag}"
+                );
+            }
+        }
+    }
+    for light in [0, 1, 1000] {
+        let equal = |frame| FrameSeed { frame, seed: frame }.xi(light);
+        assert!(even(&equal, 1), "light {light}");
+    }
+}
+
 /// Corners of the estimator: no light, no distance, and no overflow to NaN.
 #[test]
 fn estimator_at_its_edges() {

@@ -102,10 +102,7 @@ impl Tiles {
         let slicing = Parting::new(slicing, surfaces);
         let subregion = |subregion| {
             let grid = TileGrid::new(interleave.subregion_size(subregion), tile_size)?;
-            let rectangle = |tile| {
-                let around = interleave.join_pixels(subregion, grid.pixels(tile));
-                camera.tile_rectangle(surfaces.image_size, around)
-            };
+            let rectangle = |tile| camera.interleaved_tile(interleave, subregion, &grid, tile);
             let mut depths =
                 TileDepths::from_rectangles(grid.size(), slicing.intervals(), rectangle)?;
             let mut intervals = Vec::new();

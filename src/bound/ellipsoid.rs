@@ -80,22 +80,26 @@ impl Ellipsoid {
     }
 
     /// The centre c, rounded.
+    #[must_use]
     pub fn center(&self) -> Vec3 {
         self.light + self.offset
     }
 
     /// Two vectors whose exact sum is the centre c: the light's position, and the way from there; or c
     /// and zero, of an ellipsoid that is [made](Self::new) of its centre.
+    #[must_use]
     pub fn center_parts(&self) -> [Vec3; 2] {
         [self.light, self.offset]
     }
 
     /// R, whose columns are the directions of the axes.
+    #[must_use]
     pub fn rotation(&self) -> Mat3 {
         self.rotation
     }
 
     /// The semi-axes, in the order of the columns of [`rotation`](Self::rotation).
+    #[must_use]
     pub fn semi_axes(&self) -> Vec3 {
         self.semi_axes
     }
@@ -152,8 +156,12 @@ impl<N: Single> ShapeLanes<N> for Ellipsoids<N> {
     }
 }
 
-impl Shape for Ellipsoid {
-    fn placed(self, position: Vec3, scale: f32) -> Self {
+impl Ellipsoid {
+    /// The shape scaled by `scale ≥ 0` about the origin and then moved by `position`, rounded
+    /// outward. Scaled by zero it is [empty](Self::is_empty).
+    #[inline]
+    #[must_use]
+    pub fn placed(self, position: Vec3, scale: f32) -> Self {
         let lanes = self.lanes();
         let semi_axes = lanes.scaled_semi_axes(scale);
         let shortest = semi_axes.min_element();
@@ -164,8 +172,20 @@ impl Shape for Ellipsoid {
         Self::from_lanes(lanes.placed(position.into(), scale))
     }
 
-    fn is_empty(&self) -> bool {
+    /// Whether nothing lies inside: the light reaches nowhere.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
         self.semi_axes == Vec3::ZERO
+    }
+}
+
+impl Shape for Ellipsoid {
+    fn placed(self, position: Vec3, scale: f32) -> Self {
+        self.placed(position, scale)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.is_empty()
     }
 
     type Lanes<N: Single> = Ellipsoids<N>;

@@ -41,11 +41,13 @@ impl HalfSpace {
     }
 
     /// q, a point of its plane.
+    #[must_use]
     pub fn position(&self) -> Vec3 {
         self.position
     }
 
     /// n.
+    #[must_use]
     pub fn normal(&self) -> Direction {
         self.normal
     }

@@ -42,6 +42,7 @@ pub enum Proxy {
 impl Proxy {
     /// The vertices of each triangle, as indices of [`vertices`](Self::vertices): counter-clockwise as seen
     /// from outside, in a right-handed space.
+    #[must_use]
     pub fn triangles(self) -> &'static [[u16; 3]] {
         match self {
             Self::Icosahedron => &FACES,
@@ -55,6 +56,7 @@ impl Proxy {
     /// Far from the origin, where neighbouring `f32` numbers lie farther apart, the mesh is larger by that.
     /// All are the centre if the ellipsoid is empty; where they would leave the range of `f32`, its largest
     /// numbers stand for them. Never NaN.
+    #[must_use]
     pub fn vertices(
         self,
         ellipsoid: &Ellipsoid,

@@ -39,11 +39,13 @@ impl Sphere {
     }
 
     /// The centre.
+    #[must_use]
     pub fn center(&self) -> Vec3 {
         self.center
     }
 
     /// The radius; infinite for a light too bright for its range to be an `f32`.
+    #[must_use]
     pub fn radius(&self) -> f32 {
         self.radius
     }
@@ -75,17 +77,32 @@ impl<N: Single> ShapeLanes<N> for Spheres<N> {
     }
 }
 
-impl Shape for Sphere {
+impl Sphere {
+    /// The shape scaled by `scale ≥ 0` about the origin and then moved by `position`, rounded
+    /// outward. Scaled by zero it is [empty](Self::is_empty).
     #[inline]
-    fn placed(self, position: Vec3, scale: f32) -> Self {
+    #[must_use]
+    pub fn placed(self, position: Vec3, scale: f32) -> Self {
         if scaled(self.radius, scale) == 0.0 {
             return Self::from_parts(position, 0.0);
         }
         Self::from_lanes(self.lanes().placed(position.into(), scale))
     }
 
-    fn is_empty(&self) -> bool {
+    /// Whether nothing lies inside: the light reaches nowhere.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
         self.radius == 0.0
+    }
+}
+
+impl Shape for Sphere {
+    fn placed(self, position: Vec3, scale: f32) -> Self {
+        self.placed(position, scale)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.is_empty()
     }
 
     type Lanes<N: Single> = Spheres<N>;

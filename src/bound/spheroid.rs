@@ -50,37 +50,44 @@ impl Spheroid {
     }
 
     /// The light's position q, a focus of the spheroid.
+    #[must_use]
     pub fn focus(&self) -> Vec3 {
         self.focus
     }
 
     /// The long axis ω_u, the direction of mirror reflection.
+    #[must_use]
     pub fn axis(&self) -> Direction {
         self.axis
     }
 
     /// r, the two short semi-axes; infinite for a light too bright for its range to be an `f32`.
+    #[must_use]
     pub fn radius(&self) -> f32 {
         self.radius
     }
 
     /// α, which gives the shape: how far the spheroid reaches behind the focus over r, and r over
     /// how far it reaches ahead.
+    #[must_use]
     pub fn roughness(&self) -> f32 {
         self.roughness
     }
 
     /// r_u = (1 + α²)/(2α) r, the long semi-axis.
+    #[must_use]
     pub fn long_semi_axis(&self) -> f32 {
         self.lanes().long_semi_axis()
     }
 
     /// The sphere around the light of radius r/α, the bound of the 2016 method (Fig. 9a).
+    #[must_use]
     pub fn sphere_at_focus(&self) -> Sphere {
         Sphere::from_parts(self.focus, round_up(self.radius / self.roughness, 1))
     }
 
     /// The smallest sphere around the spheroid (Fig. 9b).
+    #[must_use]
     pub fn enclosing_sphere(&self) -> Sphere {
         if self.is_empty() || self.long_semi_axis().is_infinite() {
             return Sphere::from_parts(self.focus, self.radius / self.roughness);
@@ -189,8 +196,12 @@ impl<N: Single> ShapeLanes<N> for Spheroids<N> {
     }
 }
 
-impl Shape for Spheroid {
-    fn placed(self, position: Vec3, scale: f32) -> Self {
+impl Spheroid {
+    /// The shape scaled by `scale ≥ 0` about the origin and then moved by `position`, rounded
+    /// outward. Scaled by zero it is [empty](Self::is_empty).
+    #[inline]
+    #[must_use]
+    pub fn placed(self, position: Vec3, scale: f32) -> Self {
         let Spheroids { focus, radius, .. } = self.lanes().placed(position.into(), scale);
         Self {
             focus: focus.into(),
@@ -199,8 +210,20 @@ impl Shape for Spheroid {
         }
     }
 
-    fn is_empty(&self) -> bool {
+    /// Whether nothing lies inside: the light reaches nowhere.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
         self.radius == 0.0
+    }
+}
+
+impl Shape for Spheroid {
+    fn placed(self, position: Vec3, scale: f32) -> Self {
+        self.placed(position, scale)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.is_empty()
     }
 
     type Lanes<N: Single> = Spheroids<N>;

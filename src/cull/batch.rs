@@ -138,6 +138,7 @@ pub struct LightBatch<P: Projected> {
 
 impl<P: Projected> LightBatch<P> {
     /// A batch without lights.
+    #[must_use]
     pub const fn new() -> Self {
         Self {
             len: 0,
@@ -147,11 +148,13 @@ impl<P: Projected> LightBatch<P> {
     }
 
     /// How many lights there are.
+    #[must_use]
     pub fn len(&self) -> usize {
         self.len
     }
 
     /// Whether there are none.
+    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }

@@ -55,6 +55,7 @@ pub struct BatchBuilder {
 impl BatchBuilder {
     /// A builder for a frame with `roulette` that `camera` sees, with the widest vectors that this
     /// processor has; without the feature `std`, that the target is compiled for.
+    #[must_use]
     pub fn new(roulette: &Roulette, camera: &Camera) -> Self {
         Self {
             frame: Frame {

@@ -64,6 +64,7 @@ pub struct CullCounters {
 impl<P: BoxTest> Culler<P> {
     /// A culler with the widest vectors that this processor has; without the feature `std`, that the
     /// target is compiled for.
+    #[must_use]
     pub fn new() -> Self {
         Self::with_level(widest())
     }
@@ -97,6 +98,7 @@ impl<P: BoxTest> Culler<P> {
     /// assert!(!lists[0].is_empty() && lists[0] == lists[1] && lists[1] == lists[2]);
     /// # Ok::<(), stochastic_light_culling::Error>(())
     /// ```
+    #[must_use]
     pub fn with_lanes(lanes: usize) -> Self {
         Self::with_level(at_most(lanes))
     }
@@ -113,6 +115,7 @@ impl<P: BoxTest> Culler<P> {
 
     /// The same culler without blocks of tiles: each tile is tested against all lights. The lists are
     /// the same, and sooner done for a few dozen lights.
+    #[must_use]
     pub fn without_blocks(self) -> Self {
         Self {
             blocks: false,
@@ -150,6 +153,7 @@ impl<P: BoxTest> Culler<P> {
     /// assert_eq!((counters.pairs, counters.rejected_exactly), (0, 1));
     /// # Ok::<(), stochastic_light_culling::Error>(())
     /// ```
+    #[must_use]
     pub fn with_exact_test(mut self) -> Self {
         self.scratch.exact = true;
         self

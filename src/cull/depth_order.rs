@@ -33,6 +33,7 @@ const STEPS: usize = ((OCTAVES << MANTISSA_BITS) + 1) as usize;
 
 impl DepthOrder {
     /// An order of no lights.
+    #[must_use]
     pub const fn new() -> Self {
         Self {
             depths: Vec::new(),

@@ -44,6 +44,7 @@ pub struct LightLists {
 
 impl LightLists {
     /// Lists of no tiles.
+    #[must_use]
     pub const fn new() -> Self {
         Self {
             columns: 0,
@@ -57,6 +58,7 @@ impl LightLists {
 
     /// The lights that may touch `tile` in its `interval`-th depth interval, in the order of their batch.
     /// Empty for a tile or an interval that does not exist.
+    #[must_use]
     pub fn of(&self, tile: [u32; 2], interval: u32) -> &[u32] {
         let ([x, y], interval) = (tile.map(|n| n as usize), interval as usize);
         if x >= self.columns || interval >= self.intervals {
@@ -73,21 +75,25 @@ impl LightLists {
     /// Where the list of each depth interval of each tile, row by row, begins and ends in
     /// [`lights`](Self::lights): the `k`-th of n intervals of tile (x, y), with `w` tiles across, is at
     /// `(y w + x) n + k`.
+    #[must_use]
     pub fn ranges(&self) -> &[[u32; 2]] {
         &self.ranges
     }
 
     /// The lists, one after the other, in no particular order of the tiles.
+    #[must_use]
     pub fn lights(&self) -> &[u32] {
         &self.lights[..self.len]
     }
 
     /// How many lights all lists hold together.
+    #[must_use]
     pub fn len(&self) -> usize {
         self.len
     }
 
     /// Whether all lists are empty.
+    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }

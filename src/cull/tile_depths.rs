@@ -128,27 +128,32 @@ impl TileDepths {
     }
 
     /// From the least to the greatest slope x/z of each column.
+    #[must_use]
     pub fn columns(&self) -> &[[f32; 2]] {
         &self.columns
     }
 
     /// From the least to the greatest slope y/z of each row.
+    #[must_use]
     pub fn rows(&self) -> &[[f32; 2]] {
         &self.rows
     }
 
     /// The near and far depth of each interval of each tile, in the order of
     /// [`LightLists::ranges`](crate::LightLists::ranges); \[∞, −∞\] of one that is missing.
+    #[must_use]
     pub fn depths(&self) -> &[[f32; 2]] {
         &self.depths
     }
 
     /// How many tiles there are, across and down.
+    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         [self.columns.len() as u32, self.rows.len() as u32]
     }
 
     /// How many depth intervals a tile has room for.
+    #[must_use]
     pub fn intervals(&self) -> u32 {
         self.intervals as u32
     }
@@ -159,6 +164,7 @@ impl TileDepths {
     /// # Panics
     ///
     /// If there is no such tile.
+    #[track_caller]
     pub fn set(
         &mut self,
         tile: [u32; 2],
@@ -182,6 +188,8 @@ impl TileDepths {
     /// # Panics
     ///
     /// If there is no such tile.
+    #[track_caller]
+    #[must_use]
     pub fn interval_of(&self, tile: [u32; 2], depth: f32) -> Option<u32> {
         let [x, y] = self.index_of(tile);
         let mut intervals = self.depths_of(x, y).iter();
@@ -189,6 +197,7 @@ impl TileDepths {
         intervals.position(holds).map(|interval| interval as u32)
     }
 
+    #[track_caller]
     fn index_of(&self, tile: [u32; 2]) -> [usize; 2] {
         let [x, y] = tile.map(|n| n as usize);
         let (columns, rows) = (self.columns.len(), self.rows.len());
@@ -200,6 +209,7 @@ impl TileDepths {
     }
 
     /// Whether no interval of any tile has surfaces.
+    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.around.iter().all(|depths| *depths == NONE)
     }

@@ -47,6 +47,7 @@ impl Roulette {
     }
 
     /// δ.
+    #[must_use]
     pub fn delta(&self) -> f32 {
         self.delta
     }
@@ -54,6 +55,7 @@ impl Roulette {
     /// p = min(I/(δl²), 1) for `intensity` = I ≥ 0 and `distance_squared` = l² ≥ 0
     /// [Tokuyoshi & Harada 2017, Eq. 2]. Zero where no light goes, at any distance.
     #[inline]
+    #[must_use]
     pub fn probability(&self, intensity: f32, distance_squared: f32) -> f32 {
         if intensity > 0.0 {
             (intensity / (self.delta * distance_squared)).min(1.0)
@@ -67,6 +69,7 @@ impl Roulette {
     ///
     /// In the unit of length; zero for I = 0.
     #[inline]
+    #[must_use]
     pub fn radius(&self, intensity: f32, xi: Xi) -> f32 {
         self.radius_in_lanes(intensity, xi.get())
     }
@@ -81,6 +84,7 @@ impl Roulette {
     ///
     /// Zero for Φ = 0, and else within the normal range of `f32`.
     #[inline]
+    #[must_use]
     pub fn scale(&self, flux: f32, xi: Xi) -> f32 {
         self.scale_in_lanes(flux, xi.get())
     }
@@ -97,6 +101,7 @@ impl Roulette {
     /// Whether p ≥ ξ: whether the light counts at squared distance l² = `distance_squared`, which is
     /// to say that l ≤ l_max.
     #[inline]
+    #[must_use]
     pub fn accepts(&self, intensity: f32, distance_squared: f32, xi: Xi) -> bool {
         intensity > 0.0 && intensity >= xi.get() * (self.delta * distance_squared)
     }
@@ -106,6 +111,7 @@ impl Roulette {
     ///
     /// Its mean over ξ is L = I/l². Infinite, as L is, at distance zero of a light.
     #[inline]
+    #[must_use]
     pub fn estimate(&self, intensity: f32, distance_squared: f32, xi: Xi) -> f32 {
         if self.accepts(intensity, distance_squared, xi) {
             (intensity / distance_squared).max(self.delta)
@@ -116,6 +122,7 @@ impl Roulette {
 
     /// 1/p of a light that is accepted, else 0: the factor for each channel of a coloured radiance.
     #[inline]
+    #[must_use]
     pub fn weight(&self, intensity: f32, distance_squared: f32, xi: Xi) -> f32 {
         if self.accepts(intensity, distance_squared, xi) {
             (self.delta * distance_squared / intensity).max(1.0)

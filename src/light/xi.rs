@@ -17,6 +17,7 @@ impl Xi {
     }
 
     /// ξ.
+    #[must_use]
     pub fn get(self) -> f32 {
         self.0
     }
@@ -43,25 +44,34 @@ pub struct FrameSeed {
 impl FrameSeed {
     /// The ξ of the light with the index `light`: the same each time.
     ///
-    /// A multiple of 2⁻³², rounded to `f32`, from the hash of [Jarzynski & Olano 2020, "pcg3d"].
+    /// A multiple of 2⁻³², rounded to `f32`, from the hash of [Jarzynski & Olano 2020, "pcg3d"]: twice, since
+    /// a single one shows a lattice for some seeds, and where frame and seed are equal.
     #[inline]
     #[must_use]
     pub fn xi(self, light: u32) -> Xi {
-        let [bits, ..] = pcg3d([light, self.frame, self.seed]);
+        // Any third word that is not small.
+        let [first, second, _] = stirred([self.frame, self.seed, 0x9E37_79B9].map(congruential));
+        // Odd numbers, for products with an even one lose bits, and with zero all of them.
+        let [bits, ..] = stirred([congruential(light), first | 1, second | 1]);
         // The sum takes 33 bits; its conversion rounds once, and the power of two is exact.
         Xi((u64::from(bits) + 1) as f32 * (1.0 / 4_294_967_296.0))
     }
 }
 
-/// Three hashed words of three words [Jarzynski & Olano 2020].
+/// The linear congruential generator that pcg3d starts from.
 #[inline]
-fn pcg3d(words: [u32; 3]) -> [u32; 3] {
-    fn stir([x, y, z]: [u32; 3]) -> [u32; 3] {
+fn congruential(word: u32) -> u32 {
+    word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)
+}
+
+/// The rest of pcg3d: three hashed words of three words.
+#[inline]
+fn stirred(words: [u32; 3]) -> [u32; 3] {
+    let stir = |[x, y, z]: [u32; 3]| {
         let x = x.wrapping_add(y.wrapping_mul(z));
         let y = y.wrapping_add(z.wrapping_mul(x));
         let z = z.wrapping_add(x.wrapping_mul(y));
         [x, y, z]
-    }
-    let congruential = words.map(|v| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
-    stir(stir(congruential).map(|v| v ^ (v >> 16)))
+    };
+    stir(stir(words).map(|word| word ^ (word >> 16)))
 }

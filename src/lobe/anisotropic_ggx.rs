@@ -58,6 +58,7 @@ impl AnisotropicGgx {
     }
 
     /// \[α_x, α_y\].
+    #[must_use]
     pub fn roughness(self) -> [f32; 2] {
         self.roughness
     }
@@ -74,6 +75,7 @@ impl AnisotropicGgx {
     /// Zero at and below the horizon, z ≤ 0, and for NaN. The largest value, 1/(πα_xα_y), is at the
     /// normal.
     #[inline]
+    #[must_use]
     pub fn ndf(self, half_vector: Vec3) -> f32 {
         anisotropic_ndf(self.roughness, half_vector.into())
     }
@@ -87,6 +89,7 @@ impl AnisotropicGgx {
     /// = (x, y, z): the visible share of the facets that face the viewer [Heitz 2014].
     ///
     /// In \[0, 1\]; zero for z ≤ 0 and NaN.
+    #[must_use]
     pub fn masking(self, direction: Vec3) -> f32 {
         if direction.z > 0.0 {
             2.0 * direction.z / (direction.z + self.masking_root(direction))
@@ -97,6 +100,7 @@ impl AnisotropicGgx {
 
     /// G2 in \[0, 1\], of the form `G`, for the unit vectors `incoming` = ω_i and `outgoing` = ω_o: the
     /// share of facets that are both lit and seen. Zero if either is not above the surface.
+    #[must_use]
     pub fn masking_shadowing<G: MaskingShadowing>(self, incoming: Vec3, outgoing: Vec3) -> f32 {
         if !(incoming.z > 0.0 && outgoing.z > 0.0) {
             return 0.0;

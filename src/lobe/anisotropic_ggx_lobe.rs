@@ -121,6 +121,14 @@ impl<F: Fresnel, G> AnisotropicGgxLobe<F, G> {
         self.ggx
     }
 
+    /// How the light arrives.
+    pub fn incidence(&self) -> Incidence {
+        Incidence {
+            normal: self.normal(),
+            incoming: self.incoming(),
+        }
+    }
+
     /// n, the surface normal.
     pub fn normal(&self) -> Direction {
         self.at_any_azimuth.normal()
@@ -155,6 +163,15 @@ impl<F: Fresnel, G> AnisotropicGgxLobe<F, G> {
     /// the same lobe altogether if α_x = α_y.
     pub(crate) fn at_any_azimuth(&self) -> &GgxLobe<F, G> {
         &self.at_any_azimuth
+    }
+}
+
+impl<F: Fresnel, G> AnisotropicGgxLobe<F, G> {
+    /// The rotation from world space to (tangent, bitangent, n).
+    #[inline(always)]
+    pub(super) fn to_surface_frame(&self) -> Matrix3<f32> {
+        let [along, across] = self.tangent_axes;
+        Matrix3::new(along.into(), across.into(), self.normal().into()).transpose()
     }
 }
 
@@ -204,12 +221,10 @@ impl<F: Fresnel, G: MaskingShadowing> AnisotropicGgxLobe<F, G> {
 impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
     #[inline]
     fn value(&self, outgoing: Vec3) -> f32 {
-        let [along, across] = self.tangent_axes.map(Vector3::from);
-        let normal = Vector3::from(self.normal());
         anisotropic_value::<f32, F, G>(
             &self.at_any_azimuth.lanes(),
             self.ggx.roughness(),
-            Matrix3::new(along, across, normal).transpose(),
+            self.to_surface_frame(),
             &[*self.fresnel()],
             outgoing.into(),
         )
@@ -228,7 +243,7 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
 /// f·max(μ_o, 0) towards `outgoing`, of the lobe that is `at_any_azimuth` but for its azimuth;
 /// `to_surface_frame` is the rotation from world space to (tangent, bitangent, n).
 #[inline(always)]
-fn anisotropic_value<N: Single, F: Fresnel, G: MaskingShadowing>(
+pub(super) fn anisotropic_value<N: Single, F: Fresnel, G: MaskingShadowing>(
     at_any_azimuth: &GgxLobes<N>,
     roughness: [N; 2],
     to_surface_frame: Matrix3<N>,

@@ -41,11 +41,13 @@ impl Conductor {
     }
 
     /// η, the refractive index.
+    #[must_use]
     pub fn index(&self) -> f32 {
         self.index
     }
 
     /// κ, the extinction coefficient.
+    #[must_use]
     pub fn extinction(&self) -> f32 {
         self.extinction
     }

@@ -40,6 +40,7 @@ impl Dielectric {
     }
 
     /// η, the relative refractive index.
+    #[must_use]
     pub fn relative_index(&self) -> f32 {
         self.relative_index
     }

@@ -205,6 +205,7 @@ impl Schlick {
     }
 
     /// F0, the reflectance at normal incidence.
+    #[must_use]
     pub fn f0(&self) -> f32 {
         self.f0
     }

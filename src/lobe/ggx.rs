@@ -51,6 +51,7 @@ impl Ggx {
     }
 
     /// α.
+    #[must_use]
     pub fn roughness(self) -> f32 {
         self.roughness
     }
@@ -61,6 +62,7 @@ impl Ggx {
     /// `cosine` = cosθ_m in \[−1, 1\]; zero for cosθ_m ≤ 0 and NaN. The largest value, 1/(πα²), is
     /// at cosθ_m = 1. A rounded cosine cannot resolve a lobe narrower than about 10⁻³ radians:
     /// where the half vector is known, use [`ndf_at`](Self::ndf_at).
+    #[must_use]
     pub fn ndf(self, cosine: f32) -> f32 {
         if cosine > 0.0 {
             let sine_squared = (1.0 - cosine) * (1.0 + cosine);
@@ -75,6 +77,7 @@ impl Ggx {
     /// As accurate as the vectors themselves: sin²θ_m comes from their cross product, not from
     /// 1 − cos²θ_m. Zero at and below the horizon, and for NaN.
     #[inline]
+    #[must_use]
     pub fn ndf_at(self, half_vector: Vec3, normal: Vec3) -> f32 {
         ndf_at(self.roughness, half_vector.into(), normal.into())
     }
@@ -83,6 +86,7 @@ impl Ggx {
     /// [Tokuyoshi & Harada 2017, Eq. 8]: the visible share of the facets that face the viewer.
     ///
     /// In \[0, 1\] for `cosine` = μ in (0, 1]; zero for μ ≤ 0 and NaN.
+    #[must_use]
     pub fn masking(self, cosine: f32) -> f32 {
         if cosine > 0.0 {
             2.0 * cosine / (cosine + masking_root(self.roughness, cosine))

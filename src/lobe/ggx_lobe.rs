@@ -103,6 +103,14 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         self.ggx
     }
 
+    /// How the light arrives.
+    pub fn incidence(&self) -> Incidence {
+        Incidence {
+            normal: self.normal,
+            incoming: self.incoming,
+        }
+    }
+
     /// n, the surface normal.
     pub fn normal(&self) -> Direction {
         self.normal

@@ -12,6 +12,7 @@ pub struct Incidence {
 
 impl Incidence {
     /// Incidence along the `normal`.
+    #[must_use]
     pub const fn head_on(normal: Direction) -> Self {
         Self {
             normal,

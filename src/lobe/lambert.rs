@@ -39,6 +39,7 @@ impl LambertLobe {
     }
 
     /// The share of light reflected, ρ.
+    #[must_use]
     pub fn albedo(&self) -> f32 {
         self.albedo
     }
@@ -49,6 +50,7 @@ impl LambertLobe {
     }
 
     /// The surface normal n.
+    #[must_use]
     pub fn normal(&self) -> Direction {
         self.normal
     }

@@ -83,6 +83,7 @@ pub trait MaskingShadowing: Copy + 'static {
     }
 
     /// G2 in \[0, 1\], for the cosines ω_i·n and ω_o·n; zero if either is not positive.
+    #[must_use]
     fn masking_shadowing(ggx: Ggx, incident_cosine: f32, outgoing_cosine: f32) -> f32 {
         if !(incident_cosine > 0.0 && outgoing_cosine > 0.0) {
             return 0.0;

@@ -10,6 +10,8 @@ mod ggx;
 mod ggx_lobe;
 mod incidence;
 mod lambert;
+#[cfg(all(test, feature = "cull"))]
+mod lanes_tests;
 mod masking;
 mod phong;
 

@@ -91,26 +91,31 @@ impl PhongLobe {
     }
 
     /// The share of light reflected, ρ, but for what the horizon cuts off.
+    #[must_use]
     pub fn albedo(&self) -> f32 {
         self.albedo
     }
 
     /// n, the exponent.
+    #[must_use]
     pub fn exponent(&self) -> f32 {
         self.exponent
     }
 
     /// The surface normal; of a lobe [about](Self::about) an axis, that axis.
+    #[must_use]
     pub fn normal(&self) -> Direction {
         self.normal
     }
 
     /// ω_i, the direction that light comes from; `None` of a lobe [about](Self::about) an axis.
+    #[must_use]
     pub fn incoming(&self) -> Option<Direction> {
         self.incoming
     }
 
     /// ω_u, the direction in which the lobe is largest.
+    #[must_use]
     pub fn axis(&self) -> Direction {
         self.axis
     }

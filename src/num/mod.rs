@@ -23,6 +23,9 @@ mod rounding;
 mod scalar;
 mod vector;
 
+#[cfg(all(test, feature = "cull"))]
+pub(crate) use lanes::tests::{LaneTest, at_every_level, to_array};
+
 pub(crate) use float::{power, sqrt, sqrt_f64, tan};
 #[cfg(feature = "cull")]
 pub(crate) use lanes::{F32Lanes, MAX_LANES, load_quads};

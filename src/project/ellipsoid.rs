@@ -41,7 +41,7 @@ use glam::{Mat3, Vec3};
 
 use super::projected::{Field, Projected, ProjectedLanes, outward};
 use super::{Project, margin};
-use crate::bound::{Ellipsoid, Ellipsoids, Shape};
+use crate::bound::{Ellipsoid, Ellipsoids};
 use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3};
 use crate::view::Camera;
 
@@ -64,6 +64,7 @@ use crate::view::Camera;
 /// assert!((both * Vec3::ONE - stretch.matrix() * Vec3::ONE).length() < 1e-4);
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
+#[must_use]
 pub fn stretch_matrix(ellipsoid: &Ellipsoid, camera: &Camera) -> Mat3 {
     let axes = camera.rotation() * ellipsoid.rotation();
     axes * Mat3::from_diagonal(ellipsoid.semi_axes().recip()) * axes.transpose()
@@ -73,6 +74,7 @@ pub fn stretch_matrix(ellipsoid: &Ellipsoid, camera: &Camera) -> Mat3 {
 /// constant z [Tokuyoshi & Harada 2017, Eq. 17].
 ///
 /// Not finite if S is singular or not finite itself.
+#[must_use]
 pub fn stretch_rotation(stretch: Mat3) -> Mat3 {
     // Not `normalize`, which panics at zero where glam is built with its assertions.
     let unit = |v: Vec3| v * v.length().recip();
@@ -108,11 +110,13 @@ pub struct ProjectedEllipsoid {
 impl ProjectedEllipsoid {
     /// M: the columns are the images of the axes of camera space. Its third row is (0, 0, m), and one
     /// of its other two elements off the diagonal of the first two columns is zero.
+    #[must_use]
     pub fn matrix(&self) -> Mat3 {
         self.matrix
     }
 
     /// Mc′, the centre of the unit sphere.
+    #[must_use]
     pub fn center(&self) -> Vec3 {
         self.center
     }

@@ -37,11 +37,13 @@ impl HalfSpace {
 
 impl ProjectedHalfSpace {
     /// n in camera space.
+    #[must_use]
     pub fn normal(&self) -> Vec3 {
         self.normal
     }
 
     /// n·q in camera space, rounded down.
+    #[must_use]
     pub fn offset(&self) -> f32 {
         self.offset
     }

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::projected::{Field, Projected, ProjectedLanes, outward};
 use super::{Project, margin};
-use crate::bound::{Shape, Sphere, Spheres};
+use crate::bound::{Sphere, Spheres};
 use crate::num::Single;
 use crate::view::Camera;
 
@@ -26,11 +26,13 @@ pub struct ProjectedSphere {
 
 impl ProjectedSphere {
     /// The centre in camera space.
+    #[must_use]
     pub fn center(&self) -> Vec3 {
         self.center
     }
 
     /// The square of the radius, enlarged by what rounding can take.
+    #[must_use]
     pub fn radius_squared(&self) -> f32 {
         self.radius_squared
     }

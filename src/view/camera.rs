@@ -2,7 +2,7 @@ use core::ops::{Bound, Range};
 
 use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
 
-use super::{PixelRectangle, TileGrid, TileRectangle};
+use super::{Interleave, PixelRectangle, TileGrid, TileRectangle};
 use crate::base::{Direction, Error, finite, number_in, orthonormal};
 use crate::num::{Double, Matrix3, Single, UNIT_ROUNDOFF, Vector3, tan};
 
@@ -221,6 +221,7 @@ impl Camera {
     }
 
     /// The axes of world space in camera space, as columns.
+    #[must_use]
     pub fn rotation(&self) -> Mat3 {
         self.rotation
     }
@@ -228,6 +229,7 @@ impl Camera {
     /// `point` of world space in camera space, rounded once: where world and camera are far from the
     /// origin, nothing of a near point is lost.
     #[inline]
+    #[must_use]
     pub fn to_camera_space(&self, point: Vec3) -> Vec3 {
         let point = Vector3::from(point).widen();
         let [x, y, z] = self.rows.map(|row| row.dot(point));
@@ -278,6 +280,7 @@ impl Camera {
     }
 
     /// `point` of camera space in world space, to rounding; the eye is where the origin goes.
+    #[must_use]
     pub fn to_world_space(&self, point: Vec3) -> Vec3 {
         self.rotation.transpose() * (point - self.translation)
     }
@@ -309,20 +312,37 @@ impl Camera {
     /// Infinite for the far plane of an infinite projection, NaN for NaN; both are sky to
     /// [`DepthInterval`](crate::DepthInterval).
     #[inline]
+    #[must_use]
     pub fn depth(&self, ndc_depth: f32) -> f32 {
         self.depth_numerator / (ndc_depth + self.depth_offset)
     }
 
     /// What a tile of `grid` covers of the view.
     #[inline]
+    #[must_use]
     pub fn tile(&self, grid: &TileGrid, tile: [u32; 2]) -> TileRectangle {
         self.tile_rectangle(grid.image_size(), grid.pixels(tile))
+    }
+
+    /// What a tile of `grid`, which is of a `subregion` of interleaved sampling, covers of the view.
+    #[inline]
+    #[must_use]
+    pub fn interleaved_tile(
+        &self,
+        interleave: &Interleave,
+        subregion: u32,
+        grid: &TileGrid,
+        tile: [u32; 2],
+    ) -> TileRectangle {
+        let pixels = interleave.join_pixels(subregion, grid.pixels(tile));
+        self.tile_rectangle(interleave.image_size(), pixels)
     }
 
     /// The tile that `pixels` of an image of `image_size` see. Pixel (0, 0) is at the top left.
     ///
     /// `image_size` must not be zero. Pixels outside the image are left out.
     #[inline]
+    #[must_use]
     pub fn tile_rectangle(&self, image_size: [u32; 2], pixels: PixelRectangle) -> TileRectangle {
         let [width, height] = image_size.map(|n| n as f32);
         let slope = |[x, y]: [u32; 2]| {
@@ -336,6 +356,7 @@ impl Camera {
 
     /// The point of camera space at `depth` that the middle of `pixel` sees.
     #[inline]
+    #[must_use]
     pub fn point_in_pixel(&self, image_size: [u32; 2], pixel: [u32; 2], depth: f32) -> Vec3 {
         let [width, height] = image_size.map(|n| n as f32);
         let [x, y] = pixel.map(|n| n as f32 + 0.5);

@@ -25,11 +25,13 @@ impl DepthInterval {
     }
 
     /// The least depth.
+    #[must_use]
     pub fn near(&self) -> f32 {
         self.near
     }
 
     /// The greatest depth.
+    #[must_use]
     pub fn far(&self) -> f32 {
         self.far
     }

@@ -51,16 +51,19 @@ impl TileGrid {
     }
 
     /// The width and height of the image in pixels.
+    #[must_use]
     pub fn image_size(&self) -> [u32; 2] {
         self.image_size
     }
 
     /// The side of a tile in pixels.
+    #[must_use]
     pub fn tile_size(&self) -> u32 {
         self.tile_size
     }
 
     /// How many tiles there are, across and down.
+    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.image_size.map(|n| n.div_ceil(self.tile_size))
     }
@@ -73,6 +76,7 @@ impl TileGrid {
 
     /// The pixels of `tile`; none of a tile outside the grid.
     #[inline]
+    #[must_use]
     pub fn pixels(&self, tile: [u32; 2]) -> PixelRectangle {
         let edge =
             |first: u32, i: usize| first.saturating_mul(self.tile_size).min(self.image_size[i]);
@@ -84,6 +88,7 @@ impl TileGrid {
 
     /// The tile that `pixel` is in.
     #[inline]
+    #[must_use]
     pub fn tile_of(&self, pixel: [u32; 2]) -> [u32; 2] {
         pixel.map(|n| n / self.tile_size)
     }

@@ -50,26 +50,31 @@ impl Interleave {
     }
 
     /// The width and height of the image in pixels.
+    #[must_use]
     pub fn image_size(&self) -> [u32; 2] {
         self.image_size
     }
 
     /// w.
+    #[must_use]
     pub fn width(&self) -> u32 {
         self.width
     }
 
     /// w².
+    #[must_use]
     pub fn subregions(&self) -> u32 {
         self.width * self.width
     }
 
     /// w², the factor that makes up for the lights a subregion leaves out.
+    #[must_use]
     pub fn weight(&self) -> f32 {
         self.subregions() as f32
     }
 
     /// The width and height of `subregion` in pixels.
+    #[must_use]
     pub fn subregion_size(&self, subregion: u32) -> [u32; 2] {
         let phase = self.phase(subregion);
         [0, 1].map(|i| (self.image_size[i] - phase[i]).div_ceil(self.width))
@@ -77,6 +82,7 @@ impl Interleave {
 
     /// The subregion that `pixel` of the image is in, and which pixel of that it is.
     #[inline]
+    #[must_use]
     pub fn split_pixel(&self, pixel: [u32; 2]) -> (u32, [u32; 2]) {
         let [x, y] = pixel.map(|n| n % self.width);
         (y * self.width + x, pixel.map(|n| n / self.width))
@@ -85,6 +91,7 @@ impl Interleave {
     /// The pixel of the image that is `local` in `subregion`: the inverse of
     /// [`split_pixel`](Self::split_pixel). Outside the image, too, for a pixel that no subregion has.
     #[inline]
+    #[must_use]
     pub fn join_pixel(&self, subregion: u32, local: [u32; 2]) -> [u32; 2] {
         let phase = self.phase(subregion);
         [0, 1].map(|i| local[i].saturating_mul(self.width).saturating_add(phase[i]))
@@ -92,6 +99,7 @@ impl Interleave {
 
     /// The pixels of the image, edge to edge, that the pixels `local` of `subregion` lie within: what
     /// a tile of a subregion sees.
+    #[must_use]
     pub fn join_pixels(&self, subregion: u32, local: PixelRectangle) -> PixelRectangle {
         PixelRectangle {
             min: self.join_pixel(subregion, local.min),
@@ -106,6 +114,7 @@ impl Interleave {
     /// Neighbouring lights go to different subregions; where their order means something, as in a
     /// grid, shuffle them first.
     #[inline]
+    #[must_use]
     pub fn split_light(&self, light: u32) -> (u32, u32) {
         (light % self.subregions(), light / self.subregions())
     }
@@ -113,6 +122,7 @@ impl Interleave {
     /// The light that is `local` in `subregion`: the inverse of [`split_light`](Self::split_light).
     /// Never past `u32::MAX`.
     #[inline]
+    #[must_use]
     pub fn join_light(&self, subregion: u32, local: u32) -> u32 {
         local
             .saturating_mul(self.subregions())
@@ -120,6 +130,7 @@ impl Interleave {
     }
 
     /// How many of `lights` light `subregion`.
+    #[must_use]
     pub fn lights_in(&self, subregion: u32, lights: u32) -> u32 {
         lights.saturating_sub(subregion).div_ceil(self.subregions())
     }

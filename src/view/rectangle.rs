@@ -53,11 +53,13 @@ impl TileRectangle {
     }
 
     /// The least slopes.
+    #[must_use]
     pub fn min(&self) -> Vec2 {
         self.min
     }
 
     /// The greatest slopes.
+    #[must_use]
     pub fn max(&self) -> Vec2 {
         self.max
     }

@@ -65,10 +65,7 @@ fn clusters_of(
 ) -> Clusters {
     let interleave = &frame.interleave;
     let [columns, rows] = tiles.grid.size();
-    let rectangle = |tile| {
-        let pixels = interleave.join_pixels(subregion, tiles.grid.pixels(tile));
-        camera.tile_rectangle(frame.surfaces.image_size, pixels)
-    };
+    let rectangle = |tile| camera.interleaved_tile(interleave, subregion, &tiles.grid, tile);
     let spans = |axis: usize, tile: [u32; 2]| -> Span {
         let rectangle = rectangle(tile);
         [rectangle.min()[axis], rectangle.max()[axis]]

@@ -97,11 +97,8 @@ fn before_surfaces(
 ) -> Vec<Vec<u32>> {
     let mut kept = Vec::new();
     for tile in subregion.grid.tiles() {
-        let pixels = stage.interleave.join_pixels(i, subregion.grid.pixels(tile));
-        let rectangle = stage
-            .subject
-            .camera
-            .tile_rectangle(stage.subject.effort.size, pixels);
+        let camera = &stage.subject.camera;
+        let rectangle = camera.interleaved_tile(&stage.interleave, i, &subregion.grid, tile);
         for interval in 0..subregion.depths.intervals() {
             let Some(depths) = subregion.interval(tile, interval) else {
                 kept.push(Vec::new());
