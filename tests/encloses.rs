@@ -15,7 +15,7 @@ use reference::{Brdf, Fresnel, GivenFresnel, MaskedAlone, Masking, Shape, Vector
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Conductor, ConstantLobe, Dielectric, Direction,
     Ellipsoid, Ggx, GgxLobe, Incidence, LambertLobe, Lobe, MaskingShadowing, NoFresnel, Paper,
-    PhongLobe, Roulette, Schlick, Shape as _, Spheroid, Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    PhongLobe, Roulette, Schlick, Spheroid, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 
 /// What the crate says of a GGX light.

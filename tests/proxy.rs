@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use proptest::prelude::*;
 use reference::{Shape, Vector};
 use stochastic_light_culling::{
-    Bounded, Direction, Ellipsoid, PhongLobe, Proxy, Shape as _,
+    Bounded, Direction, Ellipsoid, PhongLobe, Proxy as _,
     glam::{Mat3, Vec3},
 };
 

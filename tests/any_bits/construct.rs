@@ -7,7 +7,7 @@ use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Camera, Conductor, ConstantLobe, DepthInterval,
     Dielectric, Direction, Ellipsoid, FrameSeed, Fresnel, FresnelMajorant, Ggx, GgxLobe, Incidence,
     Interleave, LambertLobe, Lobe, NoFresnel, Paper, PhongLobe, PixelRectangle, Proxy, Roulette,
-    Schlick, Shape, Sphere, Tight, TileGrid, TileRectangle, Triaxial, Vpl, Xi,
+    Schlick, Sphere, Tight, TileGrid, TileRectangle, Triaxial, Vpl, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
 

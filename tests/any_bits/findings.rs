@@ -3,7 +3,7 @@
 use stochastic_light_culling::{
     BatchBuilder, Bounded, Camera, Conductor, Culler, DepthInterval, Direction, Ellipsoid, Ggx,
     GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, Lobe, NoFresnel, Paper, Roulette,
-    Shape, Sphere, Spheroid, Tight, TileDepths, TileRectangle,
+    Sphere, Spheroid, Tight, TileDepths, TileRectangle,
     glam::{Mat3, Mat4, Vec2, Vec3},
 };
 

@@ -2,7 +2,7 @@
 
 use stochastic_light_culling::{
     Bounded, Camera, DepthInterval, Ellipsoid, FrameSeed, GgxLobe, Paper, ProjectedEllipsoid,
-    Roulette, Schlick, Shape as _, Sphere, Tight, TileGrid, Triaxial, glam::Vec3,
+    Roulette, Schlick, Sphere, Tight, TileGrid, Triaxial, glam::Vec3,
 };
 
 use super::{Bench, Case, METAL, off};
