@@ -13,7 +13,7 @@ use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterio
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Camera, Conductor, DepthInterval, Dielectric,
     Direction, Ellipsoid, FrameSeed, Fresnel, Ggx, GgxLobe, Incidence, Interleave, LambertLobe,
-    Lobe, NoFresnel, Paper, PhongLobe, Proxy, Roulette, Schlick, Shape, Spheroid, Tight, TileGrid,
+    Lobe, NoFresnel, Paper, PhongLobe, Proxy, Roulette, Schlick, Spheroid, Tight, TileGrid,
     Triaxial, Vpl, Xi,
     glam::{Mat3, Vec3},
     stretch_matrix, stretch_rotation,

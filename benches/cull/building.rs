@@ -4,9 +4,9 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, measurement::WallTime};
 use stochastic_light_culling::{
-    BatchBuilder, Camera, DepthOrder, Direction, FrameSeed, Fresnel, Ggx, GgxLobe, Incidence,
-    LambertLobe, LightBatch, Lobe, NoFresnel, Paper, Projected, Roulette, Schlick, Tight, Vpl, Xi,
-    glam::Vec3,
+    AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, Camera, DepthOrder, Direction, FrameSeed,
+    Fresnel, Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, Lobe, NoFresnel, Paper, Projected,
+    Roulette, Schlick, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 
 use crate::workload;
@@ -85,6 +85,24 @@ fn glossy<F: Fresnel>(
         |light, xi| light.bound_by(Tight, roulette, xi).project(camera),
         |lights, batch| builder.add_by(Tight, indexed(lights), batch),
     );
+    build(
+        group,
+        &format!("triaxial, {name}"),
+        &lights,
+        |light, xi| light.bound_by(Triaxial, roulette, xi).project(camera),
+        |lights, batch| builder.add_by(Triaxial, indexed(lights), batch),
+    );
+}
+
+/// Brushed metal, its grain along any tangent.
+fn brushed_lights<F: Fresnel>(fresnel: F) -> Vec<(Vpl<AnisotropicGgxLobe<F>>, Xi)> {
+    lights(|i, incidence| {
+        let roughness = [0.05, 0.1, 0.2, 0.4];
+        let [along, across] = [i, i / 4].map(|i| roughness[i as usize % 4]);
+        let ggx = AnisotropicGgx::new(along, across).expect("in range");
+        let tangent = Direction::new(incidence.normal.any_orthonormal_vector()).expect("unit");
+        AnisotropicGgxLobe::new(ggx, fresnel, incidence, tangent).expect("at right angles")
+    })
 }
 
 /// Times are per light.
@@ -96,8 +114,17 @@ pub fn building(criterion: &mut Criterion) {
     let schlick = Schlick::new(0.9).expect("in range");
     glossy(&mut group, "Schlick", schlick, &roulette, &camera);
 
-    let diffuse = lights(|_, incidence| LambertLobe::new(0.8, incidence.normal).expect("in range"));
+    let brushed = brushed_lights(schlick);
     let builder = BatchBuilder::new(&roulette, &camera);
+    build(
+        &mut group,
+        "anisotropic, Schlick",
+        &brushed,
+        |light, xi| light.bound(&roulette, xi).project(&camera),
+        |lights, batch| builder.add(indexed(lights), batch),
+    );
+
+    let diffuse = lights(|_, incidence| LambertLobe::new(0.8, incidence.normal).expect("in range"));
     build(
         &mut group,
         "diffuse",

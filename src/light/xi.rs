@@ -50,9 +50,13 @@ impl FrameSeed {
     #[must_use]
     pub fn xi(self, light: u32) -> Xi {
         // Any third word that is not small.
-        let [first, second, _] = stirred([self.frame, self.seed, 0x9E37_79B9].map(congruential));
-        // Odd numbers, for products with an even one lose bits, and with zero all of them.
-        let [bits, ..] = stirred([congruential(light), first | 1, second | 1]);
+        let [first, second] = stirred(
+            congruential(self.frame),
+            congruential(self.seed),
+            congruential(0x9E37_79B9),
+        );
+        // Odd numbers: a product with an even one loses bits, and with zero all of them.
+        let [bits, _] = stirred(congruential(light), first | 1, second | 1);
         // The sum takes 33 bits; its conversion rounds once, and the power of two is exact.
         Xi((u64::from(bits) + 1) as f32 * (1.0 / 4_294_967_296.0))
     }
@@ -64,14 +68,16 @@ fn congruential(word: u32) -> u32 {
     word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)
 }
 
-/// The rest of pcg3d: three hashed words of three words.
+/// The rest of pcg3d, of which the first two hashed words are taken.
 #[inline]
-fn stirred(words: [u32; 3]) -> [u32; 3] {
-    let stir = |[x, y, z]: [u32; 3]| {
-        let x = x.wrapping_add(y.wrapping_mul(z));
-        let y = y.wrapping_add(z.wrapping_mul(x));
-        let z = z.wrapping_add(x.wrapping_mul(y));
-        [x, y, z]
-    };
-    stir(stir(words).map(|word| word ^ (word >> 16)))
+fn stirred(mut x: u32, mut y: u32, mut z: u32) -> [u32; 2] {
+    x = x.wrapping_add(y.wrapping_mul(z));
+    y = y.wrapping_add(z.wrapping_mul(x));
+    z = z.wrapping_add(x.wrapping_mul(y));
+    x ^= x >> 16;
+    y ^= y >> 16;
+    z ^= z >> 16;
+    x = x.wrapping_add(y.wrapping_mul(z));
+    y = y.wrapping_add(z.wrapping_mul(x));
+    [x, y]
 }
