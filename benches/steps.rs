@@ -4,9 +4,6 @@
     reason = "criterion_group! makes a public function without any"
 )]
 
-#[path = "../tests/direct_port/mod.rs"]
-mod direct_port;
-
 use std::hint::black_box;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
@@ -18,6 +15,7 @@ use stochastic_light_culling::{
     glam::{Mat3, Vec3},
     stretch_matrix, stretch_rotation,
 };
+use support::direct_port;
 
 const LIGHTS: u32 = 1024;
 

@@ -5,19 +5,12 @@
 //! cargo run --release --example tightness -- --csv
 //! ```
 
-mod command;
-#[path = "../tests/reference/mod.rs"]
-mod reference;
-#[path = "../tests/tightness/mod.rs"]
-mod tightness;
-
 use std::process::ExitCode;
 
 use clap::Parser;
+use common::command::{self, say};
 use rayon::prelude::*;
-
-use command::say;
-use tightness::{DIELECTRICS, METALS, Place, Volumes};
+use support::tightness::{self, DIELECTRICS, METALS, Place, Volumes};
 
 /// Volumes of the bounds of a GGX lobe over that of the paper's spheroid.
 #[derive(Parser)]

@@ -1,10 +1,6 @@
 //! Lights that are made ready sixteen at a time are, bit by bit, those made ready one by one.
 #![cfg(feature = "cull")]
 
-mod generators;
-mod reference;
-
-use generators::{Lit, cases, log_uniform};
 use proptest::prelude::*;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BoundStrategy, Bounded, BoxTest, Camera,
@@ -13,6 +9,7 @@ use stochastic_light_culling::{
     Paper, PhongLobe, Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Shape,
     Sphere, Spheroid, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
+use support::generators::{self, Lit, cases, log_uniform};
 
 /// What a light is made of, whatever its lobe.
 #[derive(Clone, Copy, Debug)]

@@ -1,17 +1,15 @@
 //! The microfacet terms are what they are defined to be, and agree with the model.
 
-mod generators;
-mod reference;
-
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use approx::assert_relative_eq;
 use proptest::prelude::*;
-use reference::{Brdf, Masking, Vector, ggx_ndf, smith_g1, smith_g2};
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, Dielectric, Direction, Fresnel, Ggx, GgxLobe,
     HeightCorrelated, Incidence, Lobe, MaskingShadowing, NoFresnel, Schlick, Separable, glam::Vec3,
 };
+use support::generators;
+use support::reference::{self, Brdf, Masking, Vector, ggx_ndf, smith_g1, smith_g2};
 
 const ROUGHNESSES: [f32; 7] = [1e-3, 0.01, 0.05, 0.2, 0.5, 0.9, 1.0];
 

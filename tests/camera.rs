@@ -1,15 +1,13 @@
 //! A camera made of an engine's two matrices sees what they see.
 
-mod generators;
-mod reference;
-
 use approx::assert_relative_eq;
 use proptest::prelude::*;
-use reference::Vector;
 use stochastic_light_culling::{
     Camera, PixelRectangle, Sphere,
     glam::{Mat4, Vec3},
 };
+use support::generators;
+use support::reference::{self, Vector};
 
 /// Of `f32`.
 const UNIT_ROUNDOFF: f64 = f32::EPSILON as f64 / 2.0;

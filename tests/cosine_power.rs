@@ -1,17 +1,15 @@
 //! Powers of the cosine, the lobes of Phong and Lambert: what they are, and that their ellipsoids are the
 //! smallest.
 
-mod generators;
-mod reference;
-
 use std::f64::consts::{PI, TAU};
 
 use approx::assert_relative_eq;
 use proptest::prelude::*;
-use reference::{Brdf, Vector};
 use stochastic_light_culling::{
     Bounded, Direction, Incidence, LambertLobe, Lobe, PhongLobe, Tight, glam::Vec3,
 };
+use support::generators;
+use support::reference::{Brdf, Vector};
 
 proptest! {
     #![proptest_config(generators::cases(1000))]

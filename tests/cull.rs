@@ -1,11 +1,6 @@
 //! Culling many lights against many tiles gives what the test of one light against one tile gives.
 #![cfg(feature = "cull")]
 
-mod generators;
-mod reference;
-mod workload;
-
-use generators::cases;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -14,7 +9,8 @@ use stochastic_light_culling::{
     PixelRectangle, ProjectedEllipsoid, ProjectedSphere, Sphere, TileDepths, TileRectangle,
     glam::{Mat3, Vec2, Vec3},
 };
-use workload::{Depths, Subregion};
+use support::generators::{self, cases};
+use support::workload::{self, Depths, Subregion};
 
 fn camera() -> Camera {
     Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.2, 1.5, 0.1..100.0).unwrap()

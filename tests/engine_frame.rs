@@ -1,11 +1,12 @@
 //! The example `engine`: its frames allocate nothing, and it sees the same in views of either handedness.
 #![cfg(feature = "cull")]
 
-mod command;
 #[path = "../examples/engine/light_pass.rs"]
 mod light_pass;
 #[path = "../examples/engine/world.rs"]
 mod world;
+
+use support::command;
 
 use light_pass::LightPass;
 use world::{Handedness, World, lights};

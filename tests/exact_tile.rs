@@ -1,14 +1,12 @@
 //! The exact tile test decides as the distance between a ball and a polyhedron does.
 
-mod generators;
-mod reference;
-
 use proptest::prelude::*;
-use reference::{Frustum, Shape, Vector};
 use stochastic_light_culling::{
     Camera, DepthInterval, Ellipsoid, HalfSpace, PixelRectangle, Sphere, TileRectangle, TileTest,
     glam::{Mat3, Vec2, Vec3},
 };
+use support::generators;
+use support::reference::{Frustum, Shape, Vector};
 
 /// From round to needles as the least α makes them.
 fn ellipsoid() -> impl Strategy<Value = Ellipsoid> {

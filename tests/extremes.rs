@@ -3,14 +3,11 @@
 //!
 //! `CASES=100000000 cargo test --test extremes -- --nocapture` is the long run.
 
-mod adversary;
-mod reference;
-
-use adversary::{Light, Tile};
 use fastrand::Rng;
 use rayon::prelude::*;
-use reference::Brdf;
 use stochastic_light_culling::HalfSpace;
+use support::adversary::{Light, Tile};
+use support::reference::Brdf;
 
 const TILES_PER_LIGHT: usize = 16;
 const BATCH: usize = 4096;

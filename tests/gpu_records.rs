@@ -1,18 +1,15 @@
 //! The bytes that a GPU is given are those that the documentation promises, and enough for the tile test.
 #![cfg(all(feature = "bytemuck", feature = "cull"))]
 
-mod generators;
-mod reference;
-
 use std::mem::{align_of, offset_of, size_of};
 
-use generators::cases;
 use proptest::prelude::*;
 use stochastic_light_culling::{
     Camera, Culler, DepthInterval, GpuEllipsoid, GpuSphere, LightBatch, LightLists, Sphere,
     TileDepths, TileRectangle,
     glam::{Vec2, Vec3},
 };
+use support::generators::{self, cases};
 
 fn camera() -> Camera {
     Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.2, 1.5, 0.1..100.0).unwrap()

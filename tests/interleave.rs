@@ -1,10 +1,8 @@
 //! Interleaving is a renumbering: each pixel and each light has one place, and each place one of them.
 
-mod generators;
-mod reference;
-
 use proptest::prelude::*;
 use stochastic_light_culling::{Interleave, PixelRectangle};
+use support::generators;
 
 proptest! {
     #![proptest_config(generators::cases(300))]

@@ -6,17 +6,14 @@
 //! cargo run --release --example tabulate -- --prove
 //! ```
 
-mod certificate;
-mod reference;
-
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use certificate::{
-    Angles, Box5, Cell, Interval, Lobe, Parameters, Point, Verdict, level, masked, prove,
-};
 use fastrand::Rng;
 use rayon::prelude::*;
-use reference::{Brdf, Fresnel, Masking, Surface, Vector, smith_g1};
+use support::certificate::{
+    Angles, Box5, Cell, Interval, Lobe, Parameters, Point, Verdict, level, masked, prove,
+};
+use support::reference::{Brdf, Fresnel, Masking, Surface, Vector, smith_g1};
 
 #[test]
 fn ellipsoids_of_cells_enclose() {

@@ -1,17 +1,15 @@
 //! A proxy contains its ellipsoid, touches it with every triangle, and is a closed surface.
 
-mod generators;
-mod reference;
-
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
-use reference::{Shape, Vector};
 use stochastic_light_culling::{
     Bounded, Direction, Ellipsoid, PhongLobe, Proxy as _,
     glam::{Mat3, Vec3},
 };
+use support::generators;
+use support::reference::{Shape, Vector};
 
 const PROXIES: [Proxy; 2] = [Proxy::Icosahedron, Proxy::Icosphere];
 

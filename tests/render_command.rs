@@ -1,13 +1,12 @@
 //! The example `render` as a command: what it refuses, and what it leaves behind.
 
-mod command;
-
 use std::ffi::OsStr;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Output;
 
 use serde_json::Value;
+use support::command;
 
 fn render<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Output {
     command::run("render", arguments)

@@ -1,11 +1,9 @@
 //! The example `report` as a command: what it refuses, and what it leaves behind.
 
-mod command;
-
 use std::collections::HashMap;
 use std::fs;
 
-use command::{assert_refused, fresh_folder, fresh_path, run};
+use support::command::{self, assert_refused, fresh_folder, fresh_path, run};
 
 #[test]
 fn refuses_what_it_does_not_know() {

@@ -1,12 +1,8 @@
 //! What is saved is what is read, and what a constructor refuses is refused when read.
 #![cfg(feature = "serde")]
 
-mod generators;
-mod reference;
-
 use std::fmt::Debug;
 
-use generators::{cases, log_uniform, up_to_one};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 use stochastic_light_culling::{
@@ -16,6 +12,7 @@ use stochastic_light_culling::{
     Proxy, Roulette, Schlick, Separable, TileGrid, TileRectangle, Vpl, Xi,
     glam::{Vec2, Vec3},
 };
+use support::generators::{self, cases, log_uniform, up_to_one};
 
 /// What can be saved and read.
 trait Saved: serde::Serialize + serde::de::DeserializeOwned + PartialEq + Debug {}

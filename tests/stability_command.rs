@@ -1,8 +1,7 @@
 //! The example `stability` as a command: its numbers, and what it refuses.
 
-mod command;
-
 use serde_json::Value;
+use support::command;
 
 #[test]
 fn prints_one_object_and_loses_no_light() {

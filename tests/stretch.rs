@@ -1,15 +1,13 @@
 //! The stretch takes ellipsoids to unit spheres and planes of constant depth to such planes.
 
-mod generators;
-mod reference;
-
 use proptest::prelude::*;
-use reference::{Shape, Vector};
 use stochastic_light_culling::{
     Camera, Incidence,
     glam::{Mat3, Vec3},
     stretch_matrix, stretch_rotation,
 };
+use support::generators;
+use support::reference::{Shape, Vector};
 
 fn times(matrix: Mat3, v: Vector) -> Vector {
     let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(Vector::from);

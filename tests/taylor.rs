@@ -1,11 +1,11 @@
 //! What the certificate of the tight bound calculates with: each operation on functions over a box contains
 //! what it stands for, to the last of what it says it is off by.
 
-mod certificate;
-
-use certificate::taylor::{PerVariable, VARIABLES};
-use certificate::{Angles, Interval, Real, Taylor, root};
 use fastrand::Rng;
+use support::certificate::{
+    Angles, Interval, Real, Taylor, root,
+    taylor::{PerVariable, VARIABLES},
+};
 
 const CASES: usize = 2000;
 

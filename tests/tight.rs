@@ -2,23 +2,20 @@
 //! triaxial one within a few per cent of the least volume of its family and touched by the surface that it
 //! is derived for, the tight one and that of a grain nearly the smallest ellipsoids there are.
 
-mod generators;
-mod reference;
-mod tightness;
-
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
 use rayon::prelude::*;
-use reference::{
-    Fresnel, GivenFresnel, Masking, Shape, SurfaceFrame, Vector, anisotropic_g2, anisotropic_ndf,
-    smith_g1, smith_g2,
-};
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Direction, Ellipsoid, Ggx, GgxLobe, Incidence,
     NoFresnel, Paper, Tight, Triaxial, glam::Vec3,
 };
-use tightness::volume;
+use support::generators;
+use support::reference::{
+    self, Fresnel, GivenFresnel, Masking, Shape, SurfaceFrame, Vector, anisotropic_g2,
+    anisotropic_ndf, smith_g1, smith_g2,
+};
+use support::tightness::{self, volume};
 
 fn spheroid_volume<F: stochastic_light_culling::Fresnel>(lobe: &GgxLobe<F>) -> f64 {
     volume(&Ellipsoid::from(lobe.unit_bound_by(Paper)))

@@ -1,15 +1,13 @@
 //! A tile that holds a point of a light's bound is never rejected, and few others are accepted.
 
-mod generators;
-mod reference;
-
 use proptest::prelude::*;
-use reference::{Shape, Vector, exact::outward};
 use stochastic_light_culling::{
     Bounded, Camera, DepthInterval, Ellipsoid, Ggx, GgxLobe, HalfSpace, Incidence, NoFresnel,
     Paper, PixelRectangle, ProjectedEllipsoid, Shape as _, Sphere, TileGrid, TileRectangle,
     glam::{Vec2, Vec3},
 };
+use support::generators;
+use support::reference::{Shape, Vector, exact::outward};
 
 /// The thinnest tile that holds `point` of camera space, if it lies before the eye and in the view.
 fn tile_around(camera: &Camera, point: Vector) -> Option<(TileRectangle, DepthInterval)> {

@@ -2,15 +2,12 @@
 //!
 //! Fixed seeds; an error of four standard errors has a chance of 6·10⁻⁵ per comparison.
 
-mod generators;
-mod reference;
-
-use reference::{Brdf, Fresnel, Masking, Surface, Vector};
 use stochastic_light_culling::{
     Bounded, Camera, DepthInterval, Direction, FrameSeed, Ggx, GgxLobe, Incidence, Interleave,
     PixelRectangle, ProjectedEllipsoid, Roulette, Schlick, Shape, TileGrid, TileRectangle, Vpl, Xi,
     glam::Vec3,
 };
+use support::reference::{Brdf, Fresnel, Masking, Surface, Vector};
 
 const FRAMES: u32 = 100_000;
 

@@ -2,8 +2,7 @@
 //! each light against each tile, a list for each depth interval.
 
 use stochastic_light_culling::glam::{Mat3, Vec2, Vec3};
-
-use crate::workload::{self, Depths, halves};
+use support::workload::{self, Depths, halves};
 
 /// M and Mc′.
 struct Light {

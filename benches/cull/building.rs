@@ -8,8 +8,7 @@ use stochastic_light_culling::{
     Fresnel, Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, Lobe, NoFresnel, Paper, Projected,
     Roulette, Schlick, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
-
-use crate::workload;
+use support::workload;
 
 /// Lights in a ball in front of the camera.
 fn lights<L: Lobe>(lobe: impl Fn(u32, Incidence) -> L) -> Vec<(Vpl<L>, Xi)> {

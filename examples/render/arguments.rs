@@ -4,9 +4,8 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
+use common::frame::BoundKind;
 use stochastic_light_culling::{Ggx, Roulette, Schlick};
-
-use crate::frame::BoundKind;
 
 /// Renders a glossy caustic by stochastic light culling, and measures what each bound costs.
 #[derive(Debug, Parser)]

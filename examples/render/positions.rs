@@ -1,9 +1,9 @@
 //! Whether the positions of surfaces are fine enough for their pixels.
 
+use common::scene::{Scene, Surface, SurfaceBuffer};
 use stochastic_light_culling::{Camera, TileGrid, TileRectangle};
 
 use crate::arguments::Arguments;
-use crate::scene::{Scene, Surface, SurfaceBuffer};
 
 /// Refuses a scene so far from the origin that rounding moves surfaces out of their pixels: the lights of
 /// their tiles are not theirs.

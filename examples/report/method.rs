@@ -1,10 +1,10 @@
 //! Ways to light a frame by its glossy lights.
 
+use common::frame::{BoundKind, Frame, GlossyLight, Slicing, Tiles, Tiling, measure_glossy, timed};
 use stochastic_light_culling::{FrameSeed, Interleave, Xi, glam::Vec3};
 
 use crate::baseline::{cluster, splat};
 use crate::figure::{Line, Look};
-use crate::frame::{BoundKind, Frame, GlossyLight, Slicing, Tiles, Tiling, measure_glossy, timed};
 use crate::statistics::median;
 use crate::subject::{Gloss, Subject};
 

@@ -5,8 +5,9 @@ use std::path::Path;
 use std::process::Command;
 use std::time::SystemTime;
 
+use common::command::say;
+
 use crate::arguments::Arguments;
-use crate::command::say;
 use crate::study::Study;
 use crate::subject::Effort;
 

@@ -1,8 +1,8 @@
 //! How far frames are from the truth.
 
+use common::frame::rmse;
 use stochastic_light_culling::glam::Vec3;
 
-use crate::frame::rmse;
 use crate::statistics::Mean;
 use crate::subject::{Subject, Truth};
 

@@ -1,10 +1,10 @@
 //! A scene as the studies see it: what the eye sees, and lights made of it again and again.
 
+use common::frame::{Frame, GlossyLight, Lights, Reference, Slicing, Tiles};
+use common::scene::{LitPoints, Scene, Surface, SurfaceBuffer, Tracer, trace_photons};
 use stochastic_light_culling::{Camera, Error, Ggx, Interleave, Roulette, Schlick, glam::Vec3};
 
 use crate::baseline::fewer;
-use crate::frame::{Frame, GlossyLight, Lights, Reference, Slicing, Tiles};
-use crate::scene::{LitPoints, Scene, Surface, SurfaceBuffer, Tracer, trace_photons};
 use crate::statistics::Mean;
 
 /// How much work the studies make of it.

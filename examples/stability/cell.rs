@@ -2,9 +2,9 @@
 
 use fastrand::Rng;
 use stochastic_light_culling::glam::Vec3;
+use support::adversary::{Bound, Light, Tile, fresnel};
+use support::reference::{Brdf, Masking};
 
-use crate::adversary::{Bound, Light, Tile, fresnel};
-use crate::reference::{Brdf, Masking};
 use crate::tally::Tally;
 use crate::{port, quantities};
 

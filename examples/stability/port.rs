@@ -1,10 +1,9 @@
 //! A light of the adversary's, as the direct port takes it.
 
 use stochastic_light_culling::glam::Vec3;
-
-use crate::adversary::{Light, Tile};
-use crate::direct_port::{self, Stretched};
-use crate::reference::{Brdf, Fresnel};
+use support::adversary::{Light, Tile};
+use support::direct_port::{self, Stretched};
+use support::reference::{Brdf, Fresnel};
 
 /// `None` for a conductor, whose Fresnel factor the papers do not print, and for lobes other than GGX.
 pub fn light(light: &Light) -> Option<direct_port::Light> {

@@ -3,13 +3,14 @@
 use stochastic_light_culling::{
     Conductor, Dielectric, Ggx, GgxLobe, Incidence, NoFresnel, Schlick, glam::Vec3,
 };
+use support::adversary::{Bound, Light};
+use support::direct_port;
+use support::reference::{
+    Brdf, Fresnel,
+    exact::{Exact, reflectance},
+};
 use twofloat::TwoFloat as Real;
 use twofloat::consts::PI;
-
-use crate::adversary::{Bound, Light};
-use crate::direct_port;
-use crate::reference::exact::{Exact, reflectance};
-use crate::reference::{Brdf, Fresnel};
 
 /// D, G1, F, F_max and r.
 pub type Quantities<T> = [T; 5];

@@ -4,12 +4,11 @@ use std::f64::consts::TAU;
 
 use fastrand::Rng;
 use rayon::prelude::*;
+use support::adversary::{Light, Tile, log_uniform};
+use support::reference::{Brdf, Fresnel, Masking, Vector, exact::Exact};
 use twofloat::TwoFloat as Real;
 
-use crate::adversary::{Light, Tile, log_uniform};
 use crate::port;
-use crate::reference::exact::Exact;
-use crate::reference::{Brdf, Fresnel, Masking, Vector};
 
 /// Inside the isosurface by this share.
 pub const INSIDE: f64 = 1e-3;

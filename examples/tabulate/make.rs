@@ -10,12 +10,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use rayon::prelude::*;
 use stochastic_light_culling::glam::DVec3;
+use support::certificate::{
+    Angles, Interval, KNOTS, LEAST_ROOT, Lobe, NUMBERS, level, masked, place,
+};
+use support::reference::Smallest;
 
-use crate::certificate::{Angles, Interval, Lobe, level, masked, place, table};
 use crate::fit::{Aim, Fit, Held, Ray};
-use crate::reference::Smallest;
 
-const SIZE: [usize; 3] = [table::ROUGHNESSES, table::INCIDENCES, table::REFLECTANCES];
 /// What ln V counts next to the logarithm of the sum of ρ².
 const VOLUME: f64 = 0.1;
 
@@ -25,21 +26,21 @@ const VOLUME: f64 = 0.1;
 /// eight of the lights per pixel; more for rough surfaces and dielectrics, where the paper's spheroid is far
 /// behind; more near normal incidence, where the spheroid of a metal is taken instead, and the surface
 /// follows the ellipsoid so closely that the proof would need most boxes.
-const MARGIN_BY_ROUGHNESS: [f64; SIZE[0]] =
+const MARGIN_BY_ROUGHNESS: [f64; KNOTS[0]] =
     [0.03, 0.004, 0.0, 0.003, 0.006, 0.02, 0.03, 0.03, 0.03];
-const MARGIN_BY_INCIDENCE: [f64; SIZE[1]] = [
+const MARGIN_BY_INCIDENCE: [f64; KNOTS[1]] = [
     0.03, 0.02, 0.012, 0.005, 0.001, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.001, 0.002, 0.003, 0.005,
     0.005, 0.005, 0.005, 0.005, 0.005, 0.005,
 ];
-const MARGIN_BY_REFLECTANCE: [f64; SIZE[2]] = [0.016, 0.016, 0.018, 0.018, 0.012, 0.0, 0.0];
+const MARGIN_BY_REFLECTANCE: [f64; KNOTS[2]] = [0.016, 0.016, 0.018, 0.018, 0.012, 0.0, 0.0];
 /// How strongly points are kept from the ellipsoid's surface, which makes the knots change smoothly.
-const STRENGTH: [f64; SIZE[0]] = [0.1, 0.05, 0.04, 0.06, 0.06, 0.06, 0.06, 0.06, 0.06];
+const STRENGTH: [f64; KNOTS[0]] = [0.1, 0.05, 0.04, 0.06, 0.06, 0.06, 0.06, 0.06, 0.06];
 
-type Knot = [f64; table::NUMBERS];
+type Knot = [f64; NUMBERS];
 
 /// The table's numbers, in its order.
 pub fn table() -> Vec<f32> {
-    let places = all(SIZE);
+    let places = all(KNOTS);
     let fit = |growths: &[f64]| -> Vec<Knot> {
         let knots = places.par_iter().zip(growths);
         knots
@@ -59,7 +60,7 @@ pub fn table() -> Vec<f32> {
 
 /// The largest growth of the cells around each knot.
 fn growths(knots: &[Knot]) -> Vec<f64> {
-    let cells = all(SIZE.map(|knots| knots - 1));
+    let cells = all(KNOTS.map(|knots| knots - 1));
     let of_cells: Vec<f64> = cells.par_iter().map(|cell| growth(knots, *cell)).collect();
     let mut most = vec![0.0_f64; knots.len()];
     for (cell, growth) in cells.iter().zip(of_cells) {
@@ -78,7 +79,7 @@ fn all([x, y, z]: [usize; 3]) -> Vec<[usize; 3]> {
 }
 
 fn index([i, j, k]: [usize; 3]) -> usize {
-    (i * SIZE[1] + j) * SIZE[2] + k
+    (i * KNOTS[1] + j) * KNOTS[2] + k
 }
 
 fn corners(cell: [usize; 3]) -> [[usize; 3]; 8] {
@@ -100,10 +101,9 @@ struct Room {
 
 impl Room {
     fn new([x, y, z]: [f64; 3]) -> Self {
-        let incidence = y * 0.5 * (SIZE[1] - 1) as f64;
-        let least = f64::from(table::LEAST_ROOT);
-        let reflectance = (z - least) / (1.0 - least) * (SIZE[2] - 1) as f64;
-        let roughness = x * (SIZE[0] - 1) as f64;
+        let incidence = y * 0.5 * (KNOTS[1] - 1) as f64;
+        let reflectance = (z - LEAST_ROOT) / (1.0 - LEAST_ROOT) * (KNOTS[2] - 1) as f64;
+        let roughness = x * (KNOTS[0] - 1) as f64;
         let more = between(&MARGIN_BY_INCIDENCE, incidence)
             .max(between(&MARGIN_BY_REFLECTANCE, reflectance));
         let margin = 1.0 + between(&MARGIN_BY_ROUGHNESS, roughness) + more;

@@ -10,12 +10,12 @@ use stochastic_light_culling::{
     Schlick, Sphere, Tight, TileGrid, TileRectangle, Triaxial, Vpl, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
+use support::adversary::{Light, Tile};
+use support::reference::{self, Brdf, Masking, Vector};
 
-use crate::adversary::{Light, Tile};
 use crate::bits::Bits;
 use crate::culling;
 use crate::probe::{self, Probed};
-use crate::reference::{self, Brdf, Masking, Vector};
 
 pub fn everything(bits: &mut Bits) {
     let cameras = cameras(bits);

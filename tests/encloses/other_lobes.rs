@@ -3,8 +3,7 @@
 use std::f64::consts::TAU;
 
 use stochastic_light_culling::{Bounded, Direction, PhongLobe};
-
-use crate::reference::{Shape, Vector};
+use support::reference::{Shape, Vector};
 
 /// The bound of a lobe for unit scale, and its value towards a unit vector.
 pub struct OtherLobe {

@@ -2,11 +2,11 @@
 //! range is drawn into tiles, and into those of 32 slices of depth that it reaches there
 //! [Örtegren & Persson 2016].
 
+use common::frame::{Frame, GlossyLight, Shaded, Subregion, Tiles, shade};
 use rayon::prelude::*;
 use stochastic_light_culling::{Camera, DepthInterval, Proxy, Tight};
 
 use super::{Polyhedron, Raster, Span};
-use crate::frame::{Frame, GlossyLight, Shaded, Subregion, Tiles, shade};
 
 /// How many slices of depth all tiles share.
 pub const SLICES: u32 = 32;

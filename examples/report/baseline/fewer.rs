@@ -1,9 +1,8 @@
 //! Neither culling nor roulette: some of the lights, drawn at random, each that much brighter.
 
+use common::frame::{Frame, GlossyLight, Path};
 use rayon::prelude::*;
 use stochastic_light_culling::{FrameSeed, glam::Vec3};
-
-use crate::frame::{Frame, GlossyLight, Path};
 
 /// The irradiance of all pixels by one in `share` of their subregion's lights, but at least one; by all
 /// of them if `share` is 1.

@@ -1,11 +1,11 @@
 //! Lights splatted one by one: the polyhedron around a light's range is drawn, and each pixel whose
 //! surface is inside evaluates the light [Dachsbacher & Stamminger 2006].
 
+use common::frame::{Frame, GlossyLight, Shaded, Sums};
 use rayon::prelude::*;
 use stochastic_light_culling::{Camera, Proxy, Tight};
 
 use super::{Polyhedron, Raster};
-use crate::frame::{Frame, GlossyLight, Shaded, Sums};
 
 /// The frame with the lights of each subregion drawn into its pixels.
 pub fn splat(frame: &Frame, camera: &Camera, lights: &[GlossyLight]) -> Shaded {

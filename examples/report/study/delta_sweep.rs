@@ -1,9 +1,10 @@
 //! (a) Error against milliseconds as δ goes from coarse to fine.
 
+use common::frame::{BoundKind, GlossyLight, timed};
+
 use super::{DELTA, F0, INTERLEAVE, ROUGHNESS, Study, of_frames};
 use crate::baseline::fewer;
 use crate::figure::{Axis, Figure, Line, Look, Panel, Point, Series};
-use crate::frame::{BoundKind, GlossyLight, timed};
 use crate::method::{Method, Stage};
 use crate::score::Score;
 use crate::sheet::Sheet;

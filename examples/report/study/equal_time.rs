@@ -1,8 +1,9 @@
 //! (b) The error of each method in the time of the paper's.
 
+use common::frame::{BoundKind, GlossyLight};
+
 use super::{DELTA, F0, INTERLEAVE, Study};
 use crate::figure::{Axis, Figure, Panel, Point, Series};
-use crate::frame::{BoundKind, GlossyLight};
 use crate::method::{Method, PAPERS, Stage};
 use crate::score::Score;
 use crate::sheet::Sheet;

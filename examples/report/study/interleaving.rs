@@ -1,8 +1,9 @@
 //! (g) Error and milliseconds against the width of interleaving, with and without denoising.
 
+use common::frame::{BoundKind, cross_bilateral, timed};
+
 use super::{DELTA, F0, ROUGHNESS, Study, of_frames};
 use crate::figure::{Axis, Figure, Line, Look, Panel, Point, Series};
-use crate::frame::{BoundKind, cross_bilateral, timed};
 use crate::method::{Method, Stage};
 use crate::score::Score;
 use crate::sheet::Sheet;

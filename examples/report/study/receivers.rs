@@ -4,13 +4,13 @@
 //! radiance L alone, p = min(L/δ, 1); a culling that knew the receiver could take p = min(c/δ', 1). Both
 //! variances are sums over all lights: nothing is drawn.
 
+use common::frame::{Frame, GlossyLight, Path};
+use common::scene::Surface;
 use rayon::prelude::*;
 use stochastic_light_culling::{Direction, GgxLobe, Incidence, LambertLobe, Lobe, glam::Vec3};
 
 use super::{DELTA, F0, ROUGHNESS, Study, of_frames};
 use crate::figure::{Axis, Figure, Line, Look, Panel, Point, Series};
-use crate::frame::{Frame, GlossyLight, Path};
-use crate::scene::Surface;
 use crate::sheet::Sheet;
 use crate::subject::{Gloss, Subject};
 

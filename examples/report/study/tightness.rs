@@ -3,17 +3,17 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use common::frame::BoundKind;
 use rayon::prelude::*;
 use stochastic_light_culling::{Bounded, Ellipsoid, GgxLobe, Paper, Schlick, Tight, Triaxial};
+use support::tightness::{DEGREES, DIELECTRICS, METALS, Place, ROUGHNESSES, Volumes, grid, volume};
 
 use super::Study;
 use crate::figure::{Axis, Figure, Line, Look, Panel, Point, Series};
-use crate::frame::BoundKind;
 use crate::method::Method;
 use crate::sheet::Sheet;
 use crate::statistics::{Mean, median};
 use crate::subject::Effort;
-use crate::tightness::{DEGREES, DIELECTRICS, METALS, Place, ROUGHNESSES, Volumes, grid, volume};
 
 pub fn make(effort: &Effort, done: &dyn Fn()) -> Study {
     let mut sheet = Sheet::new(&[
@@ -127,7 +127,7 @@ fn over_spheroid(bound: BoundKind, place: Place) -> f64 {
         BoundKind::Triaxial => volume(&lobe.unit_bound_by(Triaxial)),
         BoundKind::Tight => volume(&lobe.unit_bound_by(Tight)),
     };
-    volume / crate::tightness::volume(&spheroid.into())
+    volume / support::tightness::volume(&spheroid.into())
 }
 
 /// The time to make a bound, the least of several rounds.

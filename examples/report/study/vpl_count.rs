@@ -1,8 +1,9 @@
 //! (f) Error and milliseconds against the number of lights.
 
+use common::frame::BoundKind;
+
 use super::{DELTA, F0, INTERLEAVE, ROUGHNESS, Study, of_any_rays};
 use crate::figure::{Axis, Figure, Panel, Point, Series};
-use crate::frame::BoundKind;
 use crate::method::{Method, Stage};
 use crate::score::Score;
 use crate::sheet::Sheet;

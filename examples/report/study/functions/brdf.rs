@@ -4,9 +4,9 @@ use stochastic_light_culling::{
     Conductor, Dielectric, GgxLobe, HeightCorrelated, LambertLobe, Lobe, MaskingShadowing,
     NoFresnel, PhongLobe, Schlick, Separable,
 };
+use support::reference::{Brdf, Fresnel, Masking, ggx_ndf, smith_g1, smith_g2};
 
 use super::{Bench, Case, METAL, off};
-use crate::reference::{Brdf, Fresnel, Masking, ggx_ndf, smith_g1, smith_g2};
 
 const GLASS: f32 = 1.5;
 const GOLD: (f32, f32) = (0.2, 3.5);

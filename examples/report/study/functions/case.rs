@@ -3,8 +3,7 @@
 use std::f64::consts::PI;
 
 use stochastic_light_culling::{Direction, FrameSeed, Ggx, GgxLobe, Incidence, glam::Vec3};
-
-use crate::reference::{Brdf, Fresnel, Masking, Surface, Vector, smith_g1};
+use support::reference::{Brdf, Fresnel, Masking, Surface, Vector, smith_g1};
 
 /// What the functions are given.
 #[derive(Clone, Copy)]

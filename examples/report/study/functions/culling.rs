@@ -4,9 +4,9 @@ use stochastic_light_culling::{
     Bounded, Camera, DepthInterval, Ellipsoid, FrameSeed, GgxLobe, Paper, ProjectedEllipsoid,
     Roulette, Schlick, Sphere, Tight, TileGrid, Triaxial, glam::Vec3,
 };
+use support::reference::{Fresnel, Frustum, Shape, Vector};
 
 use super::{Bench, Case, METAL, off};
-use crate::reference::{Fresnel, Frustum, Shape, Vector};
 
 pub fn bounds(bench: &mut Bench) {
     let kind = "bounds";

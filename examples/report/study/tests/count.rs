@@ -1,8 +1,7 @@
 //! How many of the lights in lists no pixel accepts.
 
+use common::frame::{Frame, GlossyLight, Path, Subregion, Tiles};
 use rayon::prelude::*;
-
-use crate::frame::{Frame, GlossyLight, Path, Subregion, Tiles};
 
 /// The lights of each depth interval of each tile of a subregion.
 pub type Lists<'a> = Box<dyn Fn([u32; 2], u32) -> &'a [u32] + Sync + 'a>;

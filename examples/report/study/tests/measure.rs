@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use common::frame::{Frame, GlossyLight, Subregion};
 use stochastic_light_culling::{
     Culler, LightBatch, LightLists, Paper, ProjectedEllipsoid, ProjectedHalfSpace, Tight,
 };
@@ -9,7 +10,6 @@ use stochastic_light_culling::{
 use super::count::{Lists, Outcome, outcome};
 use super::{Setting, Test};
 use crate::baseline::cluster;
-use crate::frame::{Frame, GlossyLight, Subregion};
 use crate::method::Stage;
 use crate::statistics::median;
 

@@ -3,16 +3,16 @@
 mod count;
 mod measure;
 
-use count::Outcome;
-use measure::measure;
+use common::frame::Slicing;
 
 use super::{DELTA, F0, INTERLEAVE, ROUGHNESS, Study, of_frames};
 use crate::baseline::cluster;
 use crate::figure::{Axis, Figure, Line, Look, Panel, Point, Series};
-use crate::frame::Slicing;
 use crate::method::Stage;
 use crate::sheet::Sheet;
 use crate::subject::{Gloss, Subject};
+use count::Outcome;
+use measure::measure;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Test {

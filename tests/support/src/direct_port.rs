@@ -3,7 +3,6 @@
 //!
 //! [Tokuyoshi & Harada 2017, Eqs. 7, 8, 12–17 and Sec. 5; supplemental Eqs. 1–6]. It loses lights, and
 //! is NaN at normal incidence.
-#![allow(dead_code, reason = "each user measures a part")]
 
 use std::f32::consts::PI;
 

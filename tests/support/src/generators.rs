@@ -1,6 +1,5 @@
 //! Inputs for the property tests, drawn more often where things break: at the ends of each range,
 //! near one, at grazing and at normal incidence.
-#![allow(dead_code, reason = "each test file uses some of the generators")]
 
 use std::f64::consts::TAU;
 

@@ -2,20 +2,12 @@
 //!
 //! A fuzz target too: `cargo bolero test --test any_bits any_bytes` runs it under a fuzzer.
 
-mod adversary;
-#[path = "any_bits/bits.rs"]
 mod bits;
-#[path = "any_bits/construct.rs"]
 mod construct;
-#[path = "any_bits/culling.rs"]
 mod culling;
-#[path = "any_bits/fields.rs"]
 mod fields;
-#[path = "any_bits/findings.rs"]
 mod findings;
-#[path = "any_bits/probe.rs"]
 mod probe;
-mod reference;
 
 use bits::Bits;
 use bolero::{ValueGenerator, check, produce};

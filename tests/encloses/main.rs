@@ -1,22 +1,22 @@
 //! Every bound contains every point of the isosurface that it bounds, with no tolerance; and none is
 //! larger than it has to be.
 
-mod generators;
-#[path = "encloses/other_lobes.rs"]
 mod other_lobes;
-mod reference;
 
 use std::f64::consts::TAU;
 
-use generators::Lit;
-use other_lobes::other_lobes;
 use proptest::prelude::*;
-use reference::{Brdf, Fresnel, GivenFresnel, MaskedAlone, Masking, Shape, Vector, smith_g1};
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Conductor, ConstantLobe, Dielectric, Direction,
     Ellipsoid, Ggx, GgxLobe, Incidence, LambertLobe, Lobe, MaskingShadowing, NoFresnel, Paper,
     PhongLobe, Roulette, Schlick, Spheroid, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
+use support::generators::{self, Lit};
+use support::reference::{
+    self, Brdf, Fresnel, GivenFresnel, MaskedAlone, Masking, Shape, Vector, smith_g1,
+};
+
+use other_lobes::other_lobes;
 
 /// What the crate says of a GGX light.
 struct GgxBounds {

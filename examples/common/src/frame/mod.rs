@@ -1,6 +1,5 @@
 //! One frame: lights and their ranges, bounds, lists of lights for tiles, shading by those lists, and
 //! what to compare it with.
-#![allow(dead_code, unused_imports, reason = "each example uses a part")]
 
 mod bounds;
 mod cull;

@@ -5,19 +5,17 @@
 //! cargo run --release --example engine -- --help
 //! ```
 
-mod command;
-#[path = "engine/light_pass.rs"]
 mod light_pass;
-#[path = "engine/world.rs"]
 mod world;
 
 use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
-use command::say;
-use light_pass::LightPass;
+use common::command::{self, say};
 use stochastic_light_culling::Error;
+
+use light_pass::LightPass;
 use world::{Handedness, World, lights};
 
 const SIZE: [u32; 2] = [1280, 720];

@@ -2,9 +2,9 @@
 
 use std::array::from_fn;
 
+use super::NUMBERS;
 use super::interval::Interval;
 use super::real::Real;
-use super::table;
 use super::taylor::{Taylor, VARIABLES};
 
 /// x = √α, y = τ + σ, z = ∜F0, and the tangents of half of φ and of half of ψ.
@@ -13,7 +13,7 @@ pub type Box5 = [Interval; VARIABLES];
 /// A cell of the table: the knots at its corners, x changing fastest, and where it is.
 #[derive(Clone, Debug)]
 pub struct Cell {
-    pub knots: [[f64; table::NUMBERS]; 8],
+    pub knots: [[f64; NUMBERS]; 8],
     pub low: [f64; 3],
     pub high: [f64; 3],
 }
@@ -21,7 +21,7 @@ pub struct Cell {
 impl Cell {
     /// The ellipsoids over a box. The factors here are off by some 10⁻¹⁶, far less than what is left for the
     /// interpolation in `f32`.
-    pub fn ellipsoids(&self, b: &Box5) -> [Taylor; table::NUMBERS] {
+    pub fn ellipsoids(&self, b: &Box5) -> [Taylor; NUMBERS] {
         let share: [Taylor; 3] = from_fn(|i| {
             let over = 1.0 / (self.high[i] - self.low[i]);
             (Taylor::variable(b[i], i) - Taylor::constant(self.low[i])) * over

@@ -1,9 +1,8 @@
 //! Examples run as commands.
-#![allow(dead_code, reason = "each test file uses a part")]
 
 use std::ffi::OsStr;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
 /// Runs the example that `cargo test` has built beside this test's own executable. With `--test`
@@ -15,12 +14,17 @@ pub fn run<S: AsRef<OsStr>>(example: &str, arguments: impl IntoIterator<Item = S
 const BUILT: &str = "first run `cargo build --profile test --examples`, or all of `cargo test`";
 
 fn command<S: AsRef<OsStr>>(example: &str, arguments: impl IntoIterator<Item = S>) -> Command {
-    let test = std::env::current_exe().expect("a test knows where it is");
-    let profile = test.ancestors().nth(2).expect("tests lie in deps/");
     let name = format!("{example}{}", std::env::consts::EXE_SUFFIX);
-    let mut command = Command::new(profile.join("examples").join(name));
+    let mut command = Command::new(profile_folder().join("examples").join(name));
     command.args(arguments);
     command
+}
+
+/// What cargo has built tests and examples in.
+fn profile_folder() -> PathBuf {
+    let test = std::env::current_exe().expect("a test knows where it is");
+    let profile = test.ancestors().nth(2).expect("tests lie in deps/");
+    profile.to_path_buf()
 }
 
 /// Asserts that an example is content if nobody reads what it prints.
@@ -38,9 +42,7 @@ pub fn assert_needs_no_reader(example: &str, arguments: &[&str]) {
 
 /// A path for this test alone, with nothing there.
 pub fn fresh_path(example: &str, test: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join(example)
-        .join(test);
+    let path = profile_folder().join("tmp").join(example).join(test);
     if path.exists() {
         fs::remove_dir_all(&path).expect("leftovers can be removed");
     }

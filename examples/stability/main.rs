@@ -5,37 +5,22 @@
 //! cargo run --release --example stability -- --help
 //! ```
 
-#[path = "../tests/adversary/mod.rs"]
-mod adversary;
-#[path = "stability/arguments.rs"]
 mod arguments;
-#[path = "stability/cell.rs"]
 mod cell;
-mod command;
-#[path = "../tests/direct_port/mod.rs"]
-mod direct_port;
-#[path = "stability/port.rs"]
 mod port;
-#[path = "output/progress.rs"]
-mod progress;
-#[path = "stability/quantities.rs"]
 mod quantities;
-#[path = "../tests/reference/mod.rs"]
-mod reference;
-#[path = "stability/report.rs"]
 mod report;
-#[path = "stability/tally.rs"]
 mod tally;
-#[path = "stability/thin_tiles.rs"]
 mod thin_tiles;
 
 use std::process::ExitCode;
 
+use common::command::{self, say};
+use common::progress;
 use rayon::prelude::*;
 
 use arguments::Arguments;
 use cell::Cell;
-use command::say;
 use tally::Tally;
 
 fn main() -> ExitCode {

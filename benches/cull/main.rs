@@ -4,16 +4,10 @@
     reason = "criterion_group! makes a public function without any"
 )]
 
-#[path = "cull/baseline.rs"]
 mod baseline;
-#[path = "cull/building.rs"]
 mod building;
-#[path = "cull/growth.rs"]
 mod growth;
-#[path = "cull/polyhedron.rs"]
 mod polyhedron;
-#[path = "../tests/workload/mod.rs"]
-mod workload;
 
 use std::hint::black_box;
 
@@ -21,7 +15,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use stochastic_light_culling::{
     Culler, DepthInterval, LightBatch, LightLists, ProjectedEllipsoid, TileDepths, TileRectangle,
 };
-use workload::{Depths, Subregion};
+use support::workload::{self, Depths, Subregion};
 
 const KINDS: [(&str, Depths); 2] = [("W1", |tile| tile.scattered), ("W1c", |tile| tile.coherent)];
 

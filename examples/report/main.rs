@@ -7,49 +7,28 @@
 //! Each study measures one choice on each scene, and leaves a CSV file and an SVG figure of the same
 //! name; `report.md` holds all figures and tables.
 
-#[path = "report/arguments.rs"]
 mod arguments;
-#[path = "report/axis.rs"]
 mod axis;
-#[path = "report/baseline/mod.rs"]
 mod baseline;
-mod command;
-#[path = "report/figure.rs"]
 mod figure;
-#[path = "output/folder.rs"]
-mod folder;
-mod frame;
-#[path = "report/method.rs"]
 mod method;
-#[path = "report/page.rs"]
 mod page;
-#[path = "output/progress.rs"]
-mod progress;
-#[path = "../tests/reference/mod.rs"]
-mod reference;
-#[path = "report/room.rs"]
 mod room;
-mod scene;
-#[path = "report/score.rs"]
 mod score;
-#[path = "report/sheet.rs"]
 mod sheet;
-#[path = "report/statistics.rs"]
 mod statistics;
-#[path = "report/study/mod.rs"]
 mod study;
-#[path = "report/subject.rs"]
 mod subject;
-#[path = "../tests/tightness/mod.rs"]
-mod tightness;
 
 use std::process::ExitCode;
 
+use common::command;
+use common::folder::make_folder;
+use common::progress::progress;
+use common::scene::Scene;
+
 use arguments::Arguments;
-use folder::make_folder;
 use page::Page;
-use progress::progress;
-use scene::Scene;
 use subject::{Effort, Subject};
 
 fn main() -> ExitCode {

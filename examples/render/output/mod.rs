@@ -1,17 +1,13 @@
-//! What a run leaves behind: pictures, a table, JSON; and its progress meanwhile.
+//! What a run leaves behind: pictures, a table and JSON.
 
-mod folder;
 mod heat_map;
 mod json;
 mod picture;
-mod progress;
 mod table;
 
-pub use folder::make_folder;
 pub use heat_map::heat_map;
 pub use json::json;
 pub use picture::{Exposure, tone_mapped, write_png};
-pub use progress::progress;
 pub use table::table;
 
 /// What one bound came to.

@@ -2,9 +2,7 @@
 
 use std::time::Instant;
 
-use stochastic_light_culling::{
-    BoxTest, Camera, Error, LambertLobe, Lobe, Roulette, Tight, Triaxial,
-};
+use stochastic_light_culling::{BoxTest, Camera, Error, LambertLobe, Lobe, Roulette};
 
 use super::bounds::{self, BoundKind, GlossyLight};
 use super::cull::Cullers;

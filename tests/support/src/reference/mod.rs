@@ -1,10 +1,5 @@
 //! The model that the crate is tested against: the papers' formulas as printed, in `f64`, sharing
 //! no code with `src/`.
-#![allow(
-    dead_code,
-    unused_imports,
-    reason = "each test file uses a part of the model"
-)]
 
 pub mod camera;
 pub mod exact;

@@ -7,24 +7,21 @@
 //! direct light → lit points → lights with their ranges → lists for tiles → shading → denoising,
 //! once with each bound, and all lights at once for reference.
 
-#[path = "render/arguments.rs"]
 mod arguments;
-mod command;
-mod frame;
 mod output;
-#[path = "render/positions.rs"]
 mod positions;
-mod scene;
 
 use std::process::ExitCode;
 
+use common::command::{self, say};
+use common::folder::make_folder;
+use common::frame::{self, Frame, Lights, Measured, Reference, Slicing, Tiles, Tiling, timed};
+use common::progress::progress;
+use common::scene::{self, LitPoints, Scene, SurfaceBuffer, Tracer};
 use stochastic_light_culling::{Camera, Error, Interleave, TileGrid, glam::Vec3};
 
 use arguments::{Arguments, ReferenceKind};
-use command::say;
-use frame::{Frame, Lights, Measured, Reference, Slicing, Tiles, Tiling, timed};
-use output::{Exposure, Request, Results, Row, make_folder, progress};
-use scene::{LitPoints, Scene, SurfaceBuffer, Tracer};
+use output::{Exposure, Request, Results, Row};
 
 fn main() -> ExitCode {
     command::run(|arguments: Arguments| render(&arguments))

@@ -1,6 +1,5 @@
 //! Points that a light reaches, exactly, and the thinnest tiles around them: drawn from the whole
 //! domain, most often from its edges.
-#![allow(dead_code, unused_imports, reason = "each user draws a part")]
 
 mod light;
 mod tile;

@@ -2,12 +2,12 @@
 
 use std::array::from_fn;
 
+use super::NUMBERS;
 use super::angles::{Angles, half};
 use super::cell::{Box5, Cell};
 use super::interval::Interval;
 use super::lobe::{Lobe, Point, level};
 use super::real::Real;
-use super::table;
 use super::taylor::{PerVariable, Taylor, VARIABLES};
 
 /// What depends on the parameters alone.
@@ -20,7 +20,7 @@ pub struct Parameters {
     fifth: Taylor,
     /// (1 − F0)/F(μ).
     steepness: Taylor,
-    ellipsoid: [Taylor; table::NUMBERS],
+    ellipsoid: [Taylor; NUMBERS],
 }
 
 /// What is known of a box.

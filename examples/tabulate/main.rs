@@ -5,26 +5,17 @@
 //! cargo run --release --example tabulate -- --prove # proves the one that is there, in minutes
 //! ```
 
-#[path = "../tests/certificate/mod.rs"]
-mod certificate;
-mod command;
-#[path = "tabulate/fit.rs"]
 mod fit;
-#[path = "tabulate/make.rs"]
 mod make;
-#[path = "output/progress.rs"]
-mod progress;
-#[path = "../tests/reference/mod.rs"]
-mod reference;
 
 use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser;
+use common::command::{self, say};
+use common::progress;
 use rayon::prelude::*;
-
-use certificate::Cell;
-use command::say;
+use support::certificate::{self, Cell};
 
 /// The table of smallest ellipsoids behind the tight bound.
 #[derive(Parser)]

@@ -11,7 +11,6 @@
 //! and Sζ contains all between them, and so sζ for any s ≤ S.
 //!
 //! All is rounded outward.
-#![allow(dead_code, unused_imports, reason = "each user needs a part")]
 
 mod angles;
 mod cell;
@@ -21,8 +20,9 @@ mod lobe;
 mod operators;
 mod over_box;
 mod real;
-#[path = "../../src/bound/table.rs"]
-pub mod table;
+#[path = "../../../../src/bound/table.rs"]
+#[expect(dead_code, reason = "the crate interpolates between the knots")]
+mod table;
 pub mod taylor;
 
 use std::array::from_fn;
@@ -36,6 +36,13 @@ pub use real::Real;
 pub use taylor::Taylor;
 
 use taylor::{PerVariable, VARIABLES};
+
+/// How many knots the table has along each coordinate.
+pub const KNOTS: [usize; 3] = [table::ROUGHNESSES, table::INCIDENCES, table::REFLECTANCES];
+/// How many numbers an ellipsoid of the table is.
+pub const NUMBERS: usize = table::NUMBERS;
+/// The least ∜F0 of the table.
+pub const LEAST_ROOT: f64 = table::LEAST_ROOT as f64;
 
 /// What ‖y‖² is shown to be at most: the rest is for rounding to `f32`.
 const MOST: f64 = 1.0 - 2e-4;
@@ -132,7 +139,7 @@ fn halve_until(
 impl Cell {
     /// The cells of the table.
     pub fn all() -> Vec<Self> {
-        let [x, y, z] = [table::ROUGHNESSES, table::INCIDENCES, table::REFLECTANCES];
+        let [x, y, z] = KNOTS;
         let cells = (0..x - 1).flat_map(|i| (0..y - 1).map(move |j| (i, j)));
         cells
             .flat_map(|(i, j)| (0..z - 1).map(move |k| Self::at([i, j, k])))
@@ -160,10 +167,9 @@ impl Cell {
 /// The coordinates of a knot.
 pub fn place([i, j, k]: [usize; 3]) -> [f64; 3] {
     let share = |i: usize, knots: usize| i as f64 / (knots - 1) as f64;
-    let least = f64::from(table::LEAST_ROOT);
     [
-        share(i, table::ROUGHNESSES),
-        2.0 * share(j, table::INCIDENCES),
-        least + (1.0 - least) * share(k, table::REFLECTANCES),
+        share(i, KNOTS[0]),
+        2.0 * share(j, KNOTS[1]),
+        LEAST_ROOT + (1.0 - LEAST_ROOT) * share(k, KNOTS[2]),
     ]
 }

@@ -1,0 +1,15 @@
+//! What the examples share.
+#![allow(
+    missing_docs,
+    clippy::missing_errors_doc,
+    clippy::missing_panics_doc,
+    clippy::must_use_candidate,
+    clippy::return_self_not_must_use,
+    reason = "public to the examples alone, where names say it"
+)]
+
+pub mod command;
+pub mod folder;
+pub mod frame;
+pub mod progress;
+pub mod scene;

@@ -1,0 +1,18 @@
+//! What the tests share, and the examples and benches with them.
+#![allow(
+    missing_docs,
+    clippy::missing_errors_doc,
+    clippy::missing_panics_doc,
+    clippy::must_use_candidate,
+    clippy::return_self_not_must_use,
+    reason = "public to the tests alone, where names say it"
+)]
+
+pub mod adversary;
+pub mod certificate;
+pub mod command;
+pub mod direct_port;
+pub mod generators;
+pub mod reference;
+pub mod tightness;
+pub mod workload;
