@@ -396,7 +396,7 @@ fn grids_too_large_for_memory_are_refused() {
 fn depths_of_no_tile_are_no_ones() {
     let view = TileRectangle::new([-1.0; 2].into(), [1.0; 2].into()).unwrap();
     let tiles = TileDepths::from_rectangles([3, 2], 1, |_| view).unwrap();
-    tiles.interval_of([3, 0], 1.0);
+    let _ = tiles.interval_of([3, 0], 1.0);
 }
 
 /// The lights in all near intervals together, and in all far ones.

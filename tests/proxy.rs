@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    Bounded, Direction, Ellipsoid, PhongLobe, Proxy as _,
+    Bounded, Direction, Ellipsoid, PhongLobe, Proxy,
     glam::{Mat3, Vec3},
 };
 use support::generators;
