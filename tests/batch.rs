@@ -6,8 +6,8 @@ use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BoundStrategy, Bounded, BoxTest, Camera,
     Conductor, ConstantLobe, DepthOrder, Dielectric, Direction, Ellipsoid, FrameSeed, Fresnel, Ggx,
     GgxLobe, Incidence, LambertLobe, LightBatch, Lobe, MaskingShadowing, NoFresnel, OwnBound,
-    Paper, PhongLobe, Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Shape,
-    Sphere, Spheroid, Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    Paper, PhongLobe, Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Sphere,
+    Spheroid, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 use support::generators::{self, Lit, cases, log_uniform};
 

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use stochastic_light_culling::{
     Bounded, Camera, DepthInterval, Ellipsoid, Ggx, GgxLobe, HalfSpace, Incidence, NoFresnel,
-    Paper, PixelRectangle, ProjectedEllipsoid, Shape as _, Sphere, TileGrid, TileRectangle,
+    Paper, PixelRectangle, ProjectedEllipsoid, Sphere, TileGrid, TileRectangle,
     glam::{Vec2, Vec3},
 };
 use support::generators;

@@ -4,7 +4,7 @@
 
 use stochastic_light_culling::{
     Bounded, Camera, DepthInterval, Direction, FrameSeed, Ggx, GgxLobe, Incidence, Interleave,
-    PixelRectangle, ProjectedEllipsoid, Roulette, Schlick, Shape, TileGrid, TileRectangle, Vpl, Xi,
+    PixelRectangle, ProjectedEllipsoid, Roulette, Schlick, TileGrid, TileRectangle, Vpl, Xi,
     glam::Vec3,
 };
 use support::reference::{Brdf, Fresnel, Masking, Surface, Vector};
