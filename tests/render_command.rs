@@ -352,6 +352,14 @@ fn measures_what_is_asked_for() {
 }
 
 #[test]
+fn renders_the_box() {
+    let (json, pictures) = small_run("box", &["--scene", "cornell"]);
+    assert_eq!(json["scene"], "cornell");
+    assert_eq!(pictures.len(), 12);
+    assert!(number(&json["diffuse"], "contributing_per_pixel") > 0.0);
+}
+
+#[test]
 fn renders_a_mesh_without_materials() {
     let folder = fresh_folder("mesh");
     let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 1 0\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";

@@ -1,6 +1,6 @@
 //! The example `report` as a command: what it refuses, and what it leaves behind.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fs;
 
 use support::command::{self, assert_refused, fresh_folder, fresh_path, run};
@@ -43,11 +43,11 @@ fn refuses_a_folder_that_is_a_file() {
 /// The columns of a CSV file by name.
 type Columns = HashMap<String, Vec<String>>;
 
-/// All that a quick run of one scene leaves.
+/// All that a quick run leaves.
 fn quick_run(test: &str, more: &[&str]) -> HashMap<String, Columns> {
     let out = fresh_path("report", test);
     let folder = out.to_str().expect("the path is UTF-8");
-    let arguments = ["--quick", "--scene", "ring", "--out", folder];
+    let arguments = ["--quick", "--out", folder];
     let output = run("report", arguments.iter().chain(more));
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{error}");
@@ -106,8 +106,17 @@ fn numbers(columns: &Columns, name: &str) -> Vec<f64> {
 }
 
 #[test]
-fn makes_every_study() {
-    let studies = quick_run("all", &[]);
+fn makes_every_study_of_the_ring() {
+    check_every_study("ring");
+}
+
+#[test]
+fn makes_every_study_of_the_box() {
+    check_every_study("cornell");
+}
+
+fn check_every_study(scene: &str) {
+    let studies = quick_run(scene, &["--scene", scene]);
     let mut names: Vec<&str> = studies.keys().map(|name| &**name).collect();
     names.sort_unstable();
     assert_eq!(
@@ -178,7 +187,9 @@ fn makes_every_study() {
 }
 
 #[test]
-fn makes_the_study_asked_for() {
+fn makes_the_study_asked_for_of_both_scenes() {
     let studies = quick_run("one", &["--study", "receivers"]);
     assert_eq!(studies.keys().collect::<Vec<_>>(), ["receivers"]);
+    let scenes: HashSet<&str> = studies["receivers"]["scene"].iter().map(|s| &**s).collect();
+    assert_eq!(scenes, HashSet::from(["ring", "cornell"]));
 }
