@@ -103,9 +103,9 @@ fn touching<S: Simd, P: BoxTest>(
     }
     let frustum = Frustum::new(P::image(&fields), splat_tile(simd, tile).widen());
     let verdict = frustum.first_verdict();
-    let apart = verdict.is_apart | frustum.is_out_of_reach();
-    let mut touching = (!(apart | verdict.is_open)).to_bitmask() as u32 & wanted;
-    let mut open = (verdict.is_open & !apart).to_bitmask() as u32 & wanted;
+    let apart = verdict.is_separated | frustum.is_out_of_reach();
+    let mut touching = (!(apart | verdict.is_undecided)).to_bitmask() as u32 & wanted;
+    let mut open = (verdict.is_undecided & !apart).to_bitmask() as u32 & wanted;
     while open != 0 {
         let lane = open.trailing_zeros();
         open &= open - 1;
