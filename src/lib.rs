@@ -1,25 +1,34 @@
 //! Stochastic light culling: tens of thousands of glossy and diffuse lights, culled per tile without
 //! losing energy on average.
 //!
-//! A light's range in each frame is drawn by Russian roulette, so that what is culled is made up for
-//! by what is kept [Tokuyoshi & Harada 2016]. Around a glossy light the range is a lobe, which an
-//! ellipsoid encloses [Tokuyoshi & Harada 2017]. The crate is the mathematics of that method, from a
-//! lit surface point to "does this light touch this tile", as pure functions over [`glam`].
+//! In each frame, Russian roulette draws a range for each light. A point beyond the range ignores the light;
+//! a point within it weights the light up, so that the mean over frames is exact [Tokuyoshi & Harada 2016].
+//! The range of a light on a glossy surface depends on direction: it is a lobe, which an ellipsoid encloses
+//! [Tokuyoshi & Harada 2017]. This crate is the mathematics of that method as pure functions over [`glam`],
+//! from a lit surface point to the question whether its light touches a tile.
 //!
-//! # The corridor
+//! # Steps
 //!
-//! | step | from | to | items |
-//! |---|---|---|---|
-//! | lobe | surface, incoming direction | what it reflects | [`GgxLobe`], [`AnisotropicGgxLobe`], [`LambertLobe`], [`PhongLobe`], [`ConstantLobe`] |
-//! | light | lobe, position, flux | radiant intensity | [`Vpl`] |
-//! | range | intensity, ξ | probability, range, estimate | [`Roulette`], [`Xi`], [`FrameSeed`] |
-//! | bound | lobe, range | shape around all it may light | [`Ellipsoid`], [`Spheroid`], [`Sphere`] by [`Tight`], [`Triaxial`], [`Paper`]; [`HalfSpace`]; [`Proxy`] to rasterise it |
-//! | view | camera, image | tiles and their depths | [`Camera`], [`TileGrid`], [`DepthInterval`], [`Interleave`] |
-//! | project | bound, camera | unit sphere in camera space | [`ProjectedEllipsoid`], [`ProjectedSphere`], [`ProjectedHalfSpace`] |
-//! | touch | projected shape, tile | touched or not | [`ProjectedEllipsoid::touches`] |
-//! | cull | many lights, many tiles | a list of lights for each tile | `BatchBuilder`, `LightBatch`, `TileDepths`, `Culler`, `LightLists` (feature `cull`) |
+//! | step | from | to |
+//! |---|---|---|
+//! | lobe | surface, incoming direction | what it reflects: [`GgxLobe`], [`LambertLobe`] and others |
+//! | light | lobe, position, flux | radiant intensity: [`Vpl`] |
+//! | range | radiant intensity, ξ | range and weight: [`Roulette`], [`Xi`], [`FrameSeed`] |
+//! | bound | lobe, range | shape that encloses the range: [`Ellipsoid`], [`Spheroid`], [`Sphere`] |
+//! | view | camera, image | tiles and their depths: [`Camera`], [`TileGrid`], [`DepthInterval`] |
+//! | project | bound, camera | unit sphere: [`ProjectedEllipsoid`], [`ProjectedSphere`] |
+//! | touch | projected bound, tile | [`ProjectedEllipsoid::touches`] |
+//! | cull | many lights, many tiles | a list of lights for each tile: `Culler` (feature `cull`) |
 //!
-//! Each step can be used alone, and knows nothing of the steps after it.
+//! - Lobes: [`GgxLobe`], [`AnisotropicGgxLobe`], [`LambertLobe`], [`PhongLobe`], [`ConstantLobe`], or any
+//!   type that implements [`Lobe`].
+//! - Bounds: [`Vpl::bound`] gives the recommended bound of a lobe. [`Vpl::bound_by`] takes a strategy:
+//!   [`Tight`], [`Triaxial`] or [`Paper`]. [`HalfSpace`] is the lit side of a surface, and [`Proxy`] is a
+//!   mesh around a bound, to rasterise it.
+//! - Culling: `BatchBuilder` fills a `LightBatch` with lights, `TileDepths` holds the depths of the tiles,
+//!   and `Culler` fills `LightLists`. [`Interleave`] splits image and lights for interleaved sampling.
+//!
+//! Each step can be used alone and does not depend on the steps after it.
 //!
 //! ```
 //! use stochastic_light_culling::{
@@ -27,24 +36,24 @@
 //!     TileGrid, Vpl, glam::Vec3,
 //! };
 //!
-//! // A point on a gold floor that a photon of 2 W reached from the upper left.
+//! // A point on a gold floor, lit from the upper left by a photon of 0.1 W.
 //! let incidence = Incidence {
 //!     normal: Direction::Y,
 //!     incoming: Direction::new(Vec3::new(-1.0, 1.0, 0.0))?,
 //! };
 //! let lobe = GgxLobe::new(Ggx::new(0.1)?, Schlick::new(0.9)?, incidence);
-//! let light = Vpl::new(Vec3::ZERO, 2.0, lobe)?;
+//! let light = Vpl::new(Vec3::ZERO, 0.1, lobe)?;
 //!
-//! // How far it reaches in this frame, and an ellipsoid around that.
+//! // Its range in this frame, enclosed by an ellipsoid.
 //! let roulette = Roulette::new(0.01)?;
 //! let xi = FrameSeed { frame: 0, seed: 0 }.xi(0);
 //! let bound = light.bound(&roulette, xi);
 //!
-//! // In the space of the camera it becomes a unit sphere,
+//! // The ellipsoid in camera space, projected to a unit sphere.
 //! let camera = Camera::look_at(Vec3::new(0.0, 2.0, 9.0), Vec3::Y, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
 //! let projected = bound.project(&camera).expect("light with flux reaches somewhere");
 //!
-//! // which is tested against the tiles and what they see between two depths.
+//! // The tiles of the image that it touches between two depths.
 //! let grid = TileGrid::new([128, 128], 16)?;
 //! let depths = DepthInterval::new(7.0, 11.0)?;
 //! let touched = grid
@@ -53,7 +62,7 @@
 //!     .count();
 //! assert!(0 < touched && touched < 64);
 //!
-//! // At a point in one of those tiles the light is accepted or not; the mean over ξ is exact.
+//! // A point in one of those tiles accepts the light or not. The mean over ξ is exact.
 //! let to_point = Vec3::new(1.5, 1.4, 0.0);
 //! let distance_squared = to_point.length_squared();
 //! let intensity = light.radiant_intensity(to_point.normalize());
@@ -64,68 +73,80 @@
 //!
 //! # Conventions
 //!
-//! - `f32` and [`glam`] types; column vectors. Directions point away from the surface.
-//! - Camera space has x to the right, y up and z = depth, positive ahead, for views of either
-//!   handedness ([`Camera`]). Pixel (0, 0) is at the top left, whether NDC y points up or, as Vulkan's,
-//!   down.
-//! - Radians, sr, W, W/sr; a light's radiance at distance l is I/l².
-//! - α is the GGX roughness; artists' *perceptual* roughness is usually √α.
-//! - n is the surface normal, ω_i and ω_o point to where light came from and goes to, μ = ω_i·n,
-//!   μ_o = ω_o·n, ω_h is the half vector, and k = 1 − α².
+//! - `f32` and the types of [`glam`]. Vectors are columns.
+//! - Directions point away from the surface. A [`Direction`] has unit length to within rounding; where a
+//!   function takes a direction as a `Vec3`, it must have unit length to 10⁻⁴.
+//! - Camera space has x to the right, y up and z = depth, positive ahead, for an engine's view space of
+//!   either handedness ([`Camera`]). Pixel (0, 0) is at the top left, whether NDC y points up or, as in
+//!   Vulkan, down.
+//! - Lengths are in the unit of the scene. Angles are in radians, solid angles in sr, flux in W, radiant
+//!   intensity in W/sr, radiance in W/(m²·sr). A light of intensity I has the radiance I/l² at distance l.
+//! - α is the GGX roughness. The *perceptual* roughness of artists is usually √α.
+//! - n is the surface normal. ω_i and ω_o point to where light comes from and goes to, and ω_h is the half
+//!   vector. μ = ω_i·n, μ_o = ω_o·n, k = 1 − α². u = 2⁻²⁴ is the unit roundoff of `f32`.
 //!
-//! # Errors, NaN and the hot loop
+//! # Errors and panics
 //!
-//! Constructors check, and say what is wrong and with which value ([`Error`]). What they return is
-//! valid: nothing after them panics, allocates or makes NaN from finite arguments; but for culling, which
-//! allocates in its first frame, and `TileDepths`, which panics if asked about a tile that it does not
-//! have. A light that reflects nothing, because its flux is zero or it is lit from behind, is no error but
-//! has an empty range; it drops out before any tile is looked at ([`Ellipsoid::project`] gives `None`).
+//! Constructors check their arguments and return an [`Error`] that names the quantity and its value. What
+//! they return is valid: no later step fails, panics, allocates or makes NaN from finite arguments. The
+//! exceptions are in culling. It allocates, in general only in its first frame, and returns an error if its
+//! lists would hold 2³² lights. `TileDepths::set` and `TileDepths::interval_of` panic for a tile outside the
+//! grid.
+//!
+//! A light that reflects nothing, because its flux is zero or it is lit from behind, is not an error. Its
+//! bound is empty, and projecting an empty bound gives `None` ([`Ellipsoid::project`]).
 //!
 //! # No light is lost
 //!
-//! Roulette is unbiased only if culling never drops a light that a point would accept. The bounds and
-//! tests promise this of the `f32` numbers that they compute, not of the real numbers that they stand
-//! for:
+//! Roulette is unbiased only if culling never drops a light that a point accepts. The promise is about the
+//! `f32` numbers that the functions take, and not about real numbers that were rounded to them:
 //!
-//! **If a tile, as the `f32` numbers of its rectangle and depth interval define it, contains a point p
-//! with ‖p − q‖ ≤ l_max(ω_o), in exact arithmetic on the `f32` numbers that were given, then
-//! [`touches`](TileTest::touches) and [`touches_exactly`](TileTest::touches_exactly) are true** of the
-//! projected bounds that [`Paper`], [`Triaxial`] and [`Tight`] give, of both of a spheroid's spheres, and of the
-//! [`HalfSpace`] above the light's surface. Directions stand for the unit vectors along them, and a point of the world for
-//! its image under the camera's matrix.
+//! **Let a tile lie in the view of a camera, and let it contain a point p, as the `f32` numbers of its
+//! rectangle and depth interval define it, with ‖p − q‖ ≤ l_max(ω_o) in exact arithmetic on the `f32`
+//! numbers of the light at q. Then [`touches`](TileTest::touches) and
+//! [`touches_exactly`](TileTest::touches_exactly) are true** of these bounds of the light, projected with
+//! that camera: those that [`Paper`], [`Triaxial`] and [`Tight`] give, both spheres of a [`Spheroid`], and
+//! the [`HalfSpace`] above the light's surface. Here a direction stands for the vector of exactly unit
+//! length along it, and a point of world space for its exact image under the camera's matrix.
 //!
-//! This holds for every α from 2⁻²⁰ to 1, every μ > 0, ranges from 10⁻¹² to 10¹², lights up to 10⁶
-//! ranges from the origin and the eye, ξ from 2⁻³², views of any rotation, handedness and offset with
-//! corners up to 89.7° off, lights around and behind the eye, and depth intervals of no thickness.
-//! Farther out a bound is merely large, the whole view if it must be, or 10⁻¹⁸ at least. The one step that is not proved
-//! is the quasi-convexity of [`Conductor`]'s F, which a search bears out. The ellipsoids of the table behind
-//! [`Tight`], between whose knots it is interpolated, are proved to enclose by a computer,
-//! box by box: `examples/tabulate -- --prove`.
+//! It holds for
 //!
-//! What it costs: at α ≥ 0.01, and r at least 10⁻³ of the distance to eye and origin, ellipsoids grow
-//! by less than 0.1 % in volume on average; at α = 10⁻⁶ by a large factor. `examples/stability` prints
-//! the table, `docs/rounding.md` counts the roundings.
+//! - α from 2⁻²⁰ to 1, every μ > 0, and ξ from 2⁻³²;
+//! - ranges from 10⁻¹² to 10¹², and lights up to 10⁶ ranges from the origin and from the eye;
+//! - views of any rotation, handedness and offset, with corners up to 89.7° from the viewing direction;
+//! - lights around and behind the eye, and depth intervals of zero thickness.
+//!
+//! Outside these ranges a bound is only larger, up to the whole view. The radius of a projected sphere is at
+//! least 10⁻¹⁸, and the semi-axes of a projected ellipsoid are at least 10⁻³⁰.
+//!
+//! Two parts rest on more than counted roundings. The quasi-convexity of F of a [`Conductor`] is not proved;
+//! a search supports it. The ellipsoids of the table behind [`Tight`], between whose knots it interpolates,
+//! are proved to enclose by a computer, box by box: `examples/tabulate -- --prove`.
+//!
+//! The cost: at α ≥ 0.01 and ranges of at least 10⁻³ of the distance to the eye and to the origin, the
+//! volume of ellipsoids grows by less than 0.1 % on average; at α = 10⁻⁶ by a large factor.
+//! `examples/stability` prints the table, and `docs/rounding.md` counts the roundings.
 //!
 //! # Scope
 //!
-//! Here: lobes and their bounds, roulette, projection, tile tests, culling, interleaved sampling. Not here:
-//! finding lit points, visibility, shading, denoising, GPU code, and anything that stores a scene;
-//! `examples/render.rs` shows one way to supply these.
+//! The crate has lobes and their bounds, roulette, projection, tile tests, culling and interleaved sampling.
+//! It does not find lit points, trace visibility, shade, denoise, run on a GPU or store a scene.
+//! `examples/render.rs` shows one way to do these.
 //!
 //! # Features
 //!
 //! - `std` (default): floating-point functions from the standard library.
-//! - `libm`: the same from the [libm](https://docs.rs/libm) crate. The crate is `no_std` without
-//!   `std`. One of the two is needed; with both, `std` is used.
-//! - `cull`: many lights against many tiles, in vectors as wide as the processor has. Needs an
-//!   allocator, and Rust 1.89.
-//! - `rayon`: the same on many cores. Brings `cull` and `std`.
-//! - `serde`: materials, lobes and lights, cameras, and settings such as roulette, ξ, tile grids, depth
-//!   intervals and interleaving can be saved, most under the names of their constructors' arguments, and
-//!   are read bit for bit. What is read goes through the constructors, and what they refuse is an error
-//!   with their words. Bounds, stretches, batches and lists, which follow from these, are made again.
-//! - `bytemuck`: `GpuEllipsoid` and `GpuSphere`, lights as the records that a shader reads. The lists of
-//!   `LightLists` are such buffers as they are.
+//! - `libm`: floating-point functions from the [libm](https://docs.rs/libm) crate. Without `std` the crate
+//!   is `no_std`. One of the two is required; with both, `std` is used.
+//! - `cull`: many lights against many tiles, in the widest vectors of the processor. Needs an allocator and
+//!   Rust 1.89.
+//! - `rayon`: culling on many cores. Enables `cull` and `std`.
+//! - `serde`: serialization of materials, lobes, lights, cameras, and settings such as roulette, ξ, tile
+//!   grids, depth intervals and interleaving, most under the names of the constructors' arguments. Values
+//!   are restored bit for bit. Deserialization goes through the constructors and returns their errors.
+//!   Bounds, projected shapes, batches and lists follow from these and are not serialized.
+//! - `bytemuck`: `GpuEllipsoid` and `GpuSphere`, projected shapes as records that a shader can read. The two
+//!   arrays of `LightLists` can be uploaded unchanged.
 //!
 //! # Sources
 //!
@@ -153,7 +174,7 @@ extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
-// In the order of the corridor: each room knows those above it.
+// Each module uses only those above it.
 mod num;
 
 mod base;
@@ -199,7 +220,7 @@ pub use view::{Camera, DepthInterval, Interleave, PixelRectangle, TileGrid, Tile
 
 pub use glam;
 
-/// The README's program is compiled and run.
+/// Compiles and runs the programs of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

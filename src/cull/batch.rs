@@ -3,7 +3,7 @@ use alloc::vec::Vec;
 use super::lanes::{LANES, Lanes};
 use crate::project::{Field, Projected};
 
-/// Sixteen lights: the fields of their shapes, and which lights they are.
+/// Sixteen lights: the fields of their shapes, and their indices.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Chunk<P: Projected> {
@@ -12,7 +12,7 @@ pub(super) struct Chunk<P: Projected> {
 }
 
 impl<P: Projected> Chunk<P> {
-    /// No lights.
+    /// A chunk whose shapes touch nothing.
     pub fn nowhere() -> Self {
         let mut fields = P::fields_of([0.0; LANES]);
         for (lanes, nowhere) in fields.as_mut().iter_mut().zip(P::NOWHERE.as_ref()) {
@@ -24,7 +24,7 @@ impl<P: Projected> Chunk<P> {
         }
     }
 
-    /// Puts the light in the lane `from_lane` of `from` in `lane`.
+    /// Copies the light in lane `from_lane` of `from` to `lane`.
     #[inline(always)]
     pub fn copy(&mut self, lane: usize, from: &Self, from_lane: usize) {
         let fields = self.fields.as_mut().iter_mut();
@@ -45,10 +45,10 @@ impl<P: Projected> Chunk<P> {
     }
 }
 
-/// Each of a chunk's lights, as bits.
+/// The bits of all lights of a chunk.
 const ALL: u32 = (1 << LANES) - 1;
 
-/// The depths that each of sixteen chunks reaches. No depth lies in those past the end.
+/// The range of depths that each of sixteen chunks reaches. Empty for chunks past the end.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Reach {
@@ -62,13 +62,13 @@ impl Reach {
         far: [f32::NEG_INFINITY; LANES],
     };
 
-    /// What the chunk at `lane` reaches.
+    /// The range of the chunk at `lane`, modulo sixteen.
     #[inline(always)]
-    pub fn of(&self, lane: usize) -> [f32; 2] {
+    pub fn get(&self, lane: usize) -> [f32; 2] {
         [self.near[lane % LANES], self.far[lane % LANES]]
     }
 
-    /// Adds `depths` to what the chunk at `lane` reaches.
+    /// Extends the range of the chunk at `lane`, modulo sixteen, to include `depths`.
     #[inline(always)]
     pub fn widen(&mut self, lane: usize, depths: [f32; 2]) {
         let (near, far) = (&mut self.near[lane % LANES], &mut self.far[lane % LANES]);
@@ -76,13 +76,15 @@ impl Reach {
     }
 }
 
-/// Lights made ready for a [`Culler`](super::Culler), sixteen by sixteen: one by one here, or many at a
-/// time by a [`BatchBuilder`](super::BatchBuilder).
+/// Projected lights in the layout that a [`Culler`](super::Culler) takes, sixteen side by side.
 ///
-/// A list holds its lights in the order in which they were pushed. Any order gives the same lists but
-/// for their order; lights that are pushed from near to far, roughly, are culled about twice as fast,
-/// since sixteen that reach the same depths are passed over at once
-/// ([`DepthOrder`](super::DepthOrder)). Keeps its memory when cleared.
+/// A [`BatchBuilder`](super::BatchBuilder) adds many lights at a time, from lights or kept bounds;
+/// [`push`](Self::push) adds one that is projected already. Keeps its memory when cleared.
+///
+/// Lists hold their lights in the order of the batch. The order does not change which lights a list holds,
+/// but it does change the speed: lights that are added roughly from near to far are culled about twice as
+/// fast, since sixteen lights that reach the same depths are skipped at once.
+/// [`DepthOrder`](super::DepthOrder) gives such an order.
 ///
 /// ```
 /// use stochastic_light_culling::{Camera, LightBatch, Sphere, glam::Vec3};
@@ -97,14 +99,14 @@ impl Reach {
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 ///
-/// What it holds depends on the lobes of the lights:
+/// The type of shape follows from the lobe of the lights:
 ///
 /// ```
 /// use stochastic_light_culling::{
 ///     BatchBuilder, Bounded, FrameSeed, LightBatch, Project, ProjectedBound, Vpl,
 /// };
 ///
-/// /// Lights that are new in each frame.
+/// /// For lights that are new in each frame.
 /// fn batch_of<L: Bounded<Shape: Project>>(
 ///     lights: &[Vpl<L>],
 ///     builder: &BatchBuilder,
@@ -116,7 +118,7 @@ impl Reach {
 ///     batch
 /// }
 ///
-/// /// Lights whose bounds were kept, here all with the same scale.
+/// /// For lights whose unit bounds are kept, here all with the same scale.
 /// fn batch_of_bounds<L: Bounded<Shape: Project>>(
 ///     lights: &[(Vpl<L>, L::Shape)],
 ///     builder: &BatchBuilder,
@@ -137,7 +139,7 @@ pub struct LightBatch<P: Projected> {
 }
 
 impl<P: Projected> LightBatch<P> {
-    /// A batch without lights.
+    /// Creates an empty batch. Does not allocate.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -147,40 +149,42 @@ impl<P: Projected> LightBatch<P> {
         }
     }
 
-    /// How many lights there are.
+    /// The number of lights.
     #[must_use]
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there are none.
+    /// Whether the batch holds no lights.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// Removes all lights, and keeps the memory.
+    /// Removes all lights and keeps the memory.
     pub fn clear(&mut self) {
         self.len = 0;
     }
 
-    /// Adds a light by its index `light`, which lists will hold, and its shape in camera space.
+    /// Adds a light: its index `light`, which lists will hold, and its projected `shape`.
+    ///
+    /// All shapes must be projected with the camera whose tiles are culled.
     pub fn push(&mut self, light: u32, shape: &P) {
         let (chunk, lane) = (self.len / LANES, self.len % LANES);
         if lane == 0 {
             self.begin(chunk, &Chunk::nowhere());
         }
         let Chunk { fields, lights } = &mut self.chunks[chunk];
-        let of_shape = shape.to_fields();
-        for (lanes, field) in fields.as_mut().iter_mut().zip(of_shape.as_ref()) {
+        let shape = shape.to_fields();
+        for (lanes, field) in fields.as_mut().iter_mut().zip(shape.as_ref()) {
             lanes[lane] = *field;
         }
         lights[lane] = light;
-        self.reach[chunk / LANES].widen(chunk % LANES, P::reach_of_fields(&of_shape));
+        self.reach[chunk / LANES].widen(chunk % LANES, P::reach_of_fields(&shape));
         self.len += 1;
     }
 
-    /// The indices of the lights and their shapes, in their order.
+    /// Iterates over the indices and shapes of the lights, in the order in which they were added.
     pub fn iter(&self) -> impl Iterator<Item = (u32, P)> {
         (0..self.len).map(|index| {
             let (chunk, lane) = (&self.chunks[index / LANES], index % LANES);
@@ -188,12 +192,12 @@ impl<P: Projected> LightBatch<P> {
         })
     }
 
-    /// The lane that the next light goes to.
+    /// The lane of the next light.
     pub(super) fn next_lane(&self) -> usize {
         self.len % LANES
     }
 
-    /// Adds the lights of `chunk` that `bits` tell, all of which reach depths within `reach`.
+    /// Adds the lights of `chunk` whose bits are set in `bits`. All of them reach depths within `reach` only.
     #[inline(always)]
     pub(super) fn append(&mut self, chunk: &Chunk<P>, bits: u32, reach: [f32; 2]) {
         if bits == ALL && self.next_lane() == 0 {
@@ -206,7 +210,7 @@ impl<P: Projected> LightBatch<P> {
         }
     }
 
-    /// `append`, light by light.
+    /// [`append`](Self::append), light by light.
     fn append_some(&mut self, chunk: &Chunk<P>, mut bits: u32, reach: [f32; 2]) {
         while bits != 0 {
             let from = bits.trailing_zeros() as usize % LANES;
@@ -221,7 +225,7 @@ impl<P: Projected> LightBatch<P> {
         }
     }
 
-    /// Makes `chunk` the one at `index`, which is at most the end.
+    /// Stores `chunk` at `index`, which is at most the number of chunks.
     #[inline(always)]
     fn begin(&mut self, index: usize, chunk: &Chunk<P>) {
         set_or_push(&mut self.chunks, index, chunk);
@@ -235,16 +239,16 @@ impl<P: Projected> LightBatch<P> {
         &self.chunks[..self.len.div_ceil(LANES)]
     }
 
-    /// What these chunks reach.
+    /// The ranges of depths of these chunks.
     pub(super) fn reach(&self) -> &[Reach] {
         &self.reach[..self.chunks().len().div_ceil(LANES)]
     }
 
-    /// Removes all lights, and gives chunks for as many as `other` has, to be filled from outside, and
-    /// their empty reaches.
+    /// Removes all lights, and returns chunks for as many lights as `other` has, with empty ranges of depths.
+    /// The caller fills them and then calls [`set_len`](Self::set_len).
     pub(super) fn make_room_for(&mut self, other: &Self) -> (&mut [Chunk<P>], &mut [Reach]) {
         self.len = 0;
-        // One more: where the last one may spill.
+        // One more chunk, since the lights of the last one can cross into it.
         let (chunks, reach) = (other.chunks().len() + 1, other.reach().len() + 1);
         grow(&mut self.chunks, chunks, Chunk::nowhere);
         grow(&mut self.reach, reach, || Reach::NONE);
@@ -252,7 +256,7 @@ impl<P: Projected> LightBatch<P> {
         (&mut self.chunks[..chunks], &mut self.reach[..reach])
     }
 
-    /// Says how many lights were filled in.
+    /// Sets the number of lights.
     pub(super) fn set_len(&mut self, len: usize) {
         self.len = len;
     }
@@ -272,15 +276,15 @@ impl<P: Projected> Extend<(u32, P)> for LightBatch<P> {
     }
 }
 
-/// Makes room for `len` values, and where there was none for half as many again: what a frame needs
-/// depends on its random numbers.
+/// Makes room for `len` values. Where the vector must grow, it grows by half as many again, since the number
+/// that a frame needs is random.
 pub(super) fn grow<V: Copy>(values: &mut Vec<V>, len: usize, value: impl FnOnce() -> V) {
     if values.len() < len {
         values.resize(len + len / 2, value());
     }
 }
 
-/// Puts `value` at `index`, which is at most the end.
+/// Stores `value` at `index`, which is at most the length.
 #[inline(always)]
 fn set_or_push<V: Copy>(values: &mut Vec<V>, index: usize, value: &V) {
     if let Some(place) = values.get_mut(index) {

@@ -1,29 +1,28 @@
-//! From blocks to smaller blocks to tiles.
+//! The recursion from blocks of tiles to smaller blocks to tiles.
 
 use alloc::vec::Vec;
 
 use fearless_simd::Simd;
 
 use super::batch::grow;
-use super::exact::list_exactly;
-use super::filter::{filter, load_fields};
-use super::lanes::{parts, splat_tile, store};
+use super::exact::append_list_exactly;
+use super::filter::filter;
+use super::lanes::splat_tile;
 use super::tile_depths::{Area, NONE};
-use super::tile_list::{Row, list};
+use super::tile_list::{Row, append_list, fill_rows};
 use super::{CullCounters, LightBatch, LightLists, TileDepths};
-use crate::num::F32Lanes;
 use crate::touch::{BoxTest, TileBounds};
 
-/// The memory of a culler.
+/// The memory and the settings of a culler.
 #[derive(Clone, Debug)]
 pub(super) struct Scratch<P: BoxTest> {
-    /// The lights of a block of each size, from the largest.
+    /// For each level of the recursion, the lights of the current block. The largest block comes first.
     blocks: Vec<LightBatch<P>>,
     levels: usize,
-    /// Chunk by chunk, what the lights share with all tiles of a row.
+    /// For each chunk, the intermediate results for the current row of tiles.
     rows: Vec<Row<P>>,
-    /// Whether lists are of the exact test.
-    pub exact: bool,
+    /// Whether the exact test follows the box test.
+    pub is_exact: bool,
     pub counters: CullCounters,
 }
 
@@ -33,12 +32,12 @@ impl<P: BoxTest> Scratch<P> {
             blocks: Vec::new(),
             levels: 0,
             rows: Vec::new(),
-            exact: false,
+            is_exact: false,
             counters: CullCounters::default(),
         }
     }
 
-    /// Makes ready to cut the grid `levels` times.
+    /// Prepares for `levels` levels of blocks, and resets the counters.
     pub fn begin(&mut self, levels: usize) {
         self.blocks
             .resize_with(levels.max(self.blocks.len()), LightBatch::new);
@@ -46,7 +45,7 @@ impl<P: BoxTest> Scratch<P> {
         self.counters = CullCounters::default();
     }
 
-    /// Puts the lists of the tiles of `area` into `lists`, which are those of this area alone.
+    /// Fills `lists`, which are for `area` alone, with the lists of its tiles.
     #[inline(always)]
     pub fn cull<S: Simd>(
         &mut self,
@@ -61,31 +60,32 @@ impl<P: BoxTest> Scratch<P> {
             lists,
             origin: area.min,
             rows: &mut self.rows,
-            exact: self.exact,
+            is_exact: self.is_exact,
             counters: &mut self.counters,
         };
         let blocks = &mut self.blocks[..self.levels];
         if area.is_all_of(tiles) {
-            walk.block(simd, lights, area, blocks);
+            walk.subdivide(simd, lights, area, blocks);
         } else {
-            walk.part(simd, lights, area, blocks);
+            walk.filter(simd, lights, area, blocks);
         }
     }
 }
 
+/// The state of one walk over the tiles of an area.
 struct Walk<'a, P: BoxTest> {
     tiles: &'a TileDepths,
     lists: &'a mut LightLists,
-    /// The tile whose lists come first.
+    /// The tile whose lists come first, \[column, row\].
     origin: [usize; 2],
     rows: &'a mut Vec<Row<P>>,
-    exact: bool,
+    is_exact: bool,
     counters: &'a mut CullCounters,
 }
 
 impl<P: BoxTest> Walk<'_, P> {
-    /// The lists of the tiles of `area`, which `lights` may all touch.
-    fn block<S: Simd>(
+    /// Fills the lists of the tiles of `area`. All `lights` may touch it.
+    fn subdivide<S: Simd>(
         &mut self,
         simd: S,
         lights: &LightBatch<P>,
@@ -95,60 +95,51 @@ impl<P: BoxTest> Walk<'_, P> {
         if blocks.is_empty() {
             simd.vectorize(
                 #[inline(always)]
-                || self.tiles(simd, lights, area),
+                || self.fill_lists(simd, lights, area),
             );
         } else {
-            for part in area.parts() {
-                self.part(simd, lights, part, blocks);
+            for part in area.subdivide() {
+                self.filter(simd, lights, part, blocks);
             }
         }
     }
 
-    /// The lists of the tiles of `area`, whose lights are among `lights`.
-    fn part<S: Simd>(
+    /// Filters `lights` by `area`, and fills the lists of its tiles.
+    fn filter<S: Simd>(
         &mut self,
         simd: S,
         lights: &LightBatch<P>,
         area: Area,
         blocks: &mut [LightBatch<P>],
     ) {
-        let Some(around) = self.tiles.around(area) else {
+        let Some(bounds) = self.tiles.bounds_of(area) else {
             self.counters.empty += 1;
             return;
         };
         let [block, smaller @ ..] = blocks else {
-            return self.block(simd, lights, area, blocks);
+            return self.subdivide(simd, lights, area, blocks);
         };
         simd.vectorize(
             #[inline(always)]
             || {
-                let tile = splat_tile(simd, around);
+                let tile = splat_tile(simd, bounds);
                 self.counters.block_tests += filter(simd, lights, &tile, block);
             },
         );
         if !block.is_empty() {
-            self.block(simd, block, area, smaller);
+            self.subdivide(simd, block, area, smaller);
         }
     }
 
-    /// The lists of the tiles of `area`, one by one.
+    /// Fills the lists of the tiles of `area`, tile by tile.
     #[inline(always)]
-    fn tiles<S: Simd>(&mut self, simd: S, lights: &LightBatch<P>, area: Area) {
+    fn fill_lists<S: Simd>(&mut self, simd: S, lights: &LightBatch<P>, area: Area) {
         let chunks = lights.chunks();
-        grow(self.rows, chunks.len(), Row::none);
+        grow(self.rows, chunks.len(), Row::zero);
         let rows = &mut self.rows[..chunks.len()];
         for y in area.min[1]..area.max[1] {
             let down = self.tiles.down(y);
-            let down_in_lanes = [F32Lanes::new(simd, down[0]), F32Lanes::new(simd, down[1])];
-            for (chunk, row) in chunks.iter().zip(&mut *rows) {
-                for part in 0..parts::<S>() {
-                    let fields = load_fields(simd, chunk, part);
-                    let shared = P::row(&fields, down_in_lanes);
-                    for (lanes, vector) in row.0.as_mut().iter_mut().zip(shared.as_ref()) {
-                        store(lanes, part, *vector);
-                    }
-                }
-            }
+            fill_rows(simd, chunks, down, rows);
             for x in area.min[0]..area.max[0] {
                 let across = self.tiles.across(x);
                 let first = self.lists.slot([x - self.origin[0], y - self.origin[1]]);
@@ -163,15 +154,16 @@ impl<P: BoxTest> Walk<'_, P> {
                         down,
                         depths: *depths,
                     };
-                    if self.exact {
-                        let tested = list_exactly(simd, lights, rows, tile, self.lists);
+                    if self.is_exact {
+                        let tested = append_list_exactly(simd, lights, rows, tile, self.lists);
                         self.counters.tile_tests += tested.lights;
                         self.counters.rejected_exactly += tested.rejected;
                     } else {
                         let tile = splat_tile(simd, tile);
-                        self.counters.tile_tests += list(simd, lights, rows, &tile, self.lists);
+                        self.counters.tile_tests +=
+                            append_list(simd, lights, rows, &tile, self.lists);
                     }
-                    self.lists.end(first + interval, start);
+                    self.lists.set_range(first + interval, start);
                 }
             }
         }

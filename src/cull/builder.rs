@@ -13,11 +13,11 @@ use crate::lobe::Lobe;
 use crate::project::{Project, ProjectedBound};
 use crate::view::Camera;
 
-/// Makes the lights of a frame ready for a [`Culler`](crate::Culler): from lights to a [`LightBatch`] in
-/// one pass, several times as fast as one light after the other.
+/// Adds the lights of a frame to a [`LightBatch`], for a [`Culler`](crate::Culler).
 ///
-/// The shapes are bit by bit those of the scalar functions, in the order in which the lights come; lights
-/// that reach nowhere are left out. Nothing is allocated but what the batch needs to grow.
+/// Bounds, places and projects many lights at a time, several times as fast as the scalar functions. The
+/// shapes have the same bits, and the order of the lights is kept. Lights whose bound is empty are left out.
+/// Allocates only if the batch must grow.
 ///
 /// ```
 /// use stochastic_light_culling::{
@@ -41,7 +41,7 @@ use crate::view::Camera;
 /// let bound = lights[41].bound(&roulette, seed.xi(41));
 /// assert_eq!((light, Some(ellipsoid)), (41, bound.project(&camera)));
 ///
-/// // The paper's bound, which is asked for by name.
+/// // With the bound of the paper.
 /// batch.clear();
 /// builder.add_by(Paper, with_xi(), &mut batch);
 /// # Ok::<(), stochastic_light_culling::Error>(())
@@ -53,8 +53,9 @@ pub struct BatchBuilder {
 }
 
 impl BatchBuilder {
-    /// A builder for a frame with `roulette` that `camera` sees, with the widest vectors that this
-    /// processor has; without the feature `std`, that the target is compiled for.
+    /// Creates a builder for a frame with `roulette` and `camera`, with the widest vectors of this processor.
+    /// Without the feature `std` the processor cannot be queried, and the vectors are those of the
+    /// compilation target.
     #[must_use]
     pub fn new(roulette: &Roulette, camera: &Camera) -> Self {
         Self {
@@ -66,8 +67,8 @@ impl BatchBuilder {
         }
     }
 
-    /// The same builder with vectors of at most `lanes` lanes, as
-    /// [`Culler::with_lanes`](crate::Culler::with_lanes) has it.
+    /// Returns this builder with vectors of at most `lanes` lanes, as
+    /// [`Culler::with_lanes`](crate::Culler::with_lanes) does. The shapes are the same.
     #[must_use]
     pub fn with_lanes(self, lanes: usize) -> Self {
         Self {
@@ -76,8 +77,9 @@ impl BatchBuilder {
         }
     }
 
-    /// Adds lights, each given by the index that lists will hold, itself, and its ξ in this frame,
-    /// with the [recommended bound](Vpl::bound) of their lobe.
+    /// Adds lights with the [recommended bound](Vpl::bound) of their lobe.
+    ///
+    /// Each item is the index of a light, which lists will hold, the light, and its ξ in this frame.
     pub fn add<'a, L: Bounded<Shape: Project>>(
         &self,
         lights: impl IntoIterator<Item = (u32, &'a Vpl<L>, Xi)>,
@@ -86,8 +88,7 @@ impl BatchBuilder {
         self.add_by(L::Strategy::default(), lights, batch);
     }
 
-    /// Adds lights as [`add`](Self::add) does, with the bound that `strategy` [puts](Vpl::bound_by) around
-    /// them.
+    /// Adds lights as [`add`](Self::add) does, with the bound of [`strategy`](Vpl::bound_by).
     pub fn add_by<'a, L: Lobe + 'static, B: BoundStrategy<L, Shape: Project>>(
         &self,
         strategy: B,
@@ -99,9 +100,11 @@ impl BatchBuilder {
         self.fill(Lights::bounded_by(strategy), lights, batch);
     }
 
-    /// Adds bounds that are kept from frame to frame, each given by the index that lists will hold,
-    /// itself, and the position and the scale that it is [placed](crate::Shape::placed) with: for a light's
-    /// [unit bound](Bounded::unit_bound) these are its position and [`Roulette::scale`].
+    /// Adds bounds that are kept from frame to frame.
+    ///
+    /// Each item is the index of a light, which lists will hold, its bound, and the position and the scale
+    /// with which the bound is [placed](crate::Shape::placed). For the
+    /// [unit bound](Bounded::unit_bound) of a light, these are its position and [`Roulette::scale`].
     pub fn add_placed<'a, B: Project>(
         &self,
         bounds: impl IntoIterator<Item = (u32, &'a B, Vec3, f32)>,
@@ -113,7 +116,8 @@ impl BatchBuilder {
         self.fill(KeptBounds(PhantomData), bounds, batch);
     }
 
-    /// Gathers items and adds them, such that each sixteen fill up a chunk.
+    /// Collects items in groups and adds them. A group begins at the next lane of the batch, so that a chunk
+    /// of it is copied as a whole unless it has empty shapes.
     fn fill<'a, I: BatchInput>(
         &self,
         input: I,
@@ -140,26 +144,26 @@ impl BatchBuilder {
         self.flush(&mut group, first..end, batch);
     }
 
-    /// Adds the items of these lanes of a group.
+    /// Adds the items of these lanes of a group to the batch.
     fn flush<I: BatchInput>(
         &self,
         group: &mut Group<I>,
         lanes: Range<usize>,
         batch: &mut LightBatch<<I::Shape as Project>::Projected>,
     ) {
-        dispatch!(self.level, simd => shape(simd, group, &lanes, &self.frame, batch));
+        dispatch!(self.level, simd => project(simd, group, &lanes, &self.frame, batch));
     }
 }
 
-/// Makes shapes of the items in these lanes.
+/// Projects the items of these lanes and adds them to the batch.
 #[inline(always)]
-fn shape<S: Simd, I: BatchInput>(
+fn project<S: Simd, I: BatchInput>(
     simd: S,
     group: &mut Group<I>,
     lanes: &Range<usize>,
     frame: &Frame,
     batch: &mut LightBatch<<I::Shape as Project>::Projected>,
 ) {
-    group.shape(simd, lanes, frame);
+    group.project(simd, lanes, frame);
     group.append_to(batch, lanes.end);
 }

@@ -8,10 +8,14 @@ use super::{LightBatch, LightLists, TileDepths};
 use crate::base::Error;
 use crate::touch::BoxTest;
 
-/// Finds the lights of each tile.
+/// Finds the lights that may touch each tile of a grid.
 ///
-/// Holds the memory that it works in, with half as much to spare, so that frames after the first allocate
-/// nothing unless one needs more than that; and knows which vectors the processor has.
+/// Takes a [`LightBatch`], which a [`BatchBuilder`](crate::BatchBuilder) makes from the lights of a frame,
+/// and [`TileDepths`]; fills [`LightLists`]. Uses the widest vectors of the processor. The lists do not
+/// depend on the width.
+///
+/// Keeps its memory, with half as much to spare. So frames after the first allocate only if one needs more
+/// than that.
 ///
 /// ```
 /// use stochastic_light_culling::{
@@ -39,39 +43,42 @@ use crate::touch::BoxTest;
 #[derive(Clone, Debug)]
 pub struct Culler<P: BoxTest> {
     pub(super) level: Level,
-    pub(super) blocks: bool,
+    pub(super) use_blocks: bool,
     pub(super) scratch: Scratch<P>,
     #[cfg(feature = "rayon")]
     pub(super) workers: Vec<super::parallel::Worker<P>>,
 }
 
-/// What one cull did, and what it was spared.
+/// Counts of the work of one call of [`Culler::cull`].
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CullCounters {
-    /// Tests of a light against a block of tiles.
+    /// Box tests of a light against a block of tiles. Tests of a chunk count for all its sixteen lanes.
     pub block_tests: u64,
-    /// Tests of a light against a depth interval of a tile.
+    /// Box tests of a light against a depth interval of a tile. Tests of a chunk count for all its sixteen
+    /// lanes.
     pub tile_tests: u64,
-    /// Depth intervals, and whole blocks of tiles, without surfaces: nothing was tested against them.
+    /// Depth intervals and whole blocks of tiles that have no surfaces and were skipped.
     pub empty: u64,
-    /// Lights that pass the box test of a depth interval but not the exact test; none without it.
+    /// Pairs of a light and a depth interval that pass the box test and fail the exact test. Zero without
+    /// the exact test.
     pub rejected_exactly: u64,
-    /// Lights in all lists together.
+    /// Pairs of a light and a depth interval in the lists: [`LightLists::len`].
     pub pairs: u64,
 }
 
 impl<P: BoxTest> Culler<P> {
-    /// A culler with the widest vectors that this processor has; without the feature `std`, that the
-    /// target is compiled for.
+    /// Creates a culler with the widest vectors of this processor. Without the feature `std` the processor
+    /// cannot be queried, and the vectors are those of the compilation target.
     #[must_use]
     pub fn new() -> Self {
         Self::with_level(widest())
     }
 
-    /// A culler with vectors of at most `lanes` lanes. The lists are the same; for measurements.
+    /// Creates a culler with vectors of at most `lanes` lanes, for measurements. The lists are the same.
     ///
-    /// On x86 16 is AVX-512, 8 is AVX2, and 4 is SSE; elsewhere there is but one width.
+    /// On x86, 16 lanes are AVX-512, 8 are AVX2 and 4 are SSE; fewer than 4 count as 4. On other processors
+    /// there is only one width.
     ///
     /// ```
     /// use stochastic_light_culling::{
@@ -106,28 +113,28 @@ impl<P: BoxTest> Culler<P> {
     fn with_level(level: Level) -> Self {
         Self {
             level,
-            blocks: true,
+            use_blocks: true,
             scratch: Scratch::new(),
             #[cfg(feature = "rayon")]
             workers: Vec::new(),
         }
     }
 
-    /// The same culler without blocks of tiles: each tile is tested against all lights. The lists are
-    /// the same, and sooner done for a few dozen lights.
+    /// Returns this culler without blocks: each tile is tested against all lights. The lists are the same.
+    /// Faster for a few dozen lights.
     #[must_use]
     pub fn without_blocks(self) -> Self {
         Self {
-            blocks: false,
+            use_blocks: false,
             ..self
         }
     }
 
-    /// The same culler with the exact test after the box test: lists are of those lights for which
+    /// Returns this culler with the exact test after the box test: lists hold the lights for which
     /// [`touches_exactly`](crate::TileTest::touches_exactly) is true.
     ///
-    /// They are shorter, and take two to three times as long or more: worth it where what is done with a
-    /// light of a list takes longer than the ten or twenty nanoseconds that each test of one costs.
+    /// The lists are shorter. Culling takes two to three times as long or more. Worth it if the work for each
+    /// light of a list takes longer than an exact test, which is ten to twenty nanoseconds.
     ///
     /// ```
     /// use stochastic_light_culling::{
@@ -135,7 +142,7 @@ impl<P: BoxTest> Culler<P> {
     ///     TileRectangle, glam::{Mat3, Vec2, Vec3},
     /// };
     ///
-    /// // Beside a deep tile far off the axis, but in the box around it.
+    /// // Beside a deep tile far off the axis, but in its bounding box.
     /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.5, 1.0, 0.1..100.0)?;
     /// let center = Vec3::new(5.5, 0.0, -5.2);
     /// let ellipsoid = Ellipsoid::new(center, Mat3::IDENTITY, Vec3::new(0.5, 1.0, 0.5))?;
@@ -155,18 +162,21 @@ impl<P: BoxTest> Culler<P> {
     /// ```
     #[must_use]
     pub fn with_exact_test(mut self) -> Self {
-        self.scratch.exact = true;
+        self.scratch.is_exact = true;
         self
     }
 
-    /// Puts into `lists` the lights of `batch` that may touch each depth interval of each tile: those
-    /// for which [`touches`](crate::TileTest::touches) is true of the tile's rectangle and the interval,
-    /// or [`touches_exactly`](crate::TileTest::touches_exactly) if it
-    /// [has the exact test](Self::with_exact_test).
+    /// Fills `lists` with the lights of `batch` that may touch each depth interval of each tile: those for
+    /// which [`touches`](crate::TileTest::touches) is true, or
+    /// [`touches_exactly`](crate::TileTest::touches_exactly) for a culler
+    /// [with the exact test](Self::with_exact_test).
+    ///
+    /// `batch` must be projected with the camera that `tiles` are of. Previous contents of `lists` are
+    /// discarded.
     ///
     /// # Errors
     ///
-    /// [`Error::Size`], with empty lists, if all lists together hold more lights than a `u32` counts.
+    /// [`Error::Size`] if all lists together hold 2³² lights or more. The lists are then empty.
     pub fn cull(
         &mut self,
         batch: &LightBatch<P>,
@@ -175,14 +185,14 @@ impl<P: BoxTest> Culler<P> {
     ) -> Result<CullCounters, Error> {
         let (scratch, all) = (&mut self.scratch, tiles.all());
         lists.reset(all.size(), tiles.intervals() as usize);
-        scratch.begin(if self.blocks { all.levels() } else { 0 });
+        scratch.begin(if self.use_blocks { all.levels() } else { 0 });
         dispatch!(self.level, simd => scratch.cull(simd, batch, tiles, all, lists));
-        counted(scratch.counters, tiles, lists)
+        finish(scratch.counters, tiles, lists)
     }
 }
 
-/// `counters` with the number of pairs, if the lists' ranges can tell it.
-pub(super) fn counted(
+/// Finishes `lists`, and completes `counters` with the number of pairs.
+pub(super) fn finish(
     counters: CullCounters,
     tiles: &TileDepths,
     lists: &mut LightLists,
@@ -202,7 +212,7 @@ pub(super) fn counted(
     })
 }
 
-/// Without `std` there is no asking the processor: what the target is compiled for.
+/// The widest vectors of the processor; without `std`, of the compilation target.
 pub(super) fn widest() -> Level {
     Level::try_detect().unwrap_or(Level::baseline())
 }

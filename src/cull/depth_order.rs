@@ -4,10 +4,9 @@ use glam::Vec3;
 
 use crate::view::Camera;
 
-/// The order of lights from near to far, in which a [`LightBatch`](crate::LightBatch) is culled fastest.
+/// Sorts lights from near to far, the order in which a [`LightBatch`](crate::LightBatch) is culled fastest.
 ///
-/// Holds the memory that it works in, so that frames after the first allocate nothing. Costs a few
-/// nanoseconds for a light.
+/// Keeps its memory, so that frames after the first do not allocate. Takes a few nanoseconds per light.
 ///
 /// ```
 /// use stochastic_light_culling::{Camera, DepthOrder, glam::Vec3};
@@ -21,18 +20,20 @@ use crate::view::Camera;
 #[derive(Clone, Debug, Default)]
 pub struct DepthOrder {
     depths: Vec<f32>,
-    /// Where the lights of each step of depth begin.
+    /// The start in `order` of the lights of each step of depth.
     starts: Vec<u32>,
     order: Vec<u32>,
 }
 
-/// Depths are told apart in steps of 2⁻⁷ of the power of two below them, down to 2⁻⁸ of the farthest.
+/// A step of depth is 2⁻⁷ of the power of two below it.
 const MANTISSA_BITS: u32 = 7;
+/// All depths below 2⁻⁸ of the farthest are one step.
 const OCTAVES: u32 = 8;
+/// The number of steps.
 const STEPS: usize = ((OCTAVES << MANTISSA_BITS) + 1) as usize;
 
 impl DepthOrder {
-    /// An order of no lights.
+    /// Creates the order of no lights. Does not allocate.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -42,16 +43,18 @@ impl DepthOrder {
         }
     }
 
-    /// The indices of `positions`, in world space, by their depth before `camera`, to about one per cent:
-    /// the order of those that are nearer to each other is kept, and so is that of those nearer than
-    /// 1/256 of the farthest one, or behind the eye. Positions past the first 2³² − 1, whose indices no
-    /// `u32` counts, are left out.
+    /// Sorts `positions` of world space by their depth for `camera`, and returns their indices.
+    ///
+    /// Depths are compared to about one per cent. Positions whose depths are nearer to each other than that
+    /// keep their order, and so do those behind the camera or nearer than 1/256 of the farthest depth. A
+    /// position whose depth is NaN counts as one behind the camera. Positions after the first 2³² − 1, whose
+    /// indices are not `u32`, are left out.
     pub fn of(&mut self, positions: impl IntoIterator<Item = Vec3>, camera: &Camera) -> &[u32] {
         let forward = camera.rotation().row(2);
-        let [anchor, seen] = camera.anchor();
+        let [anchor, anchor_image] = camera.anchor();
         let depth = |position: Vec3| {
-            let depth = forward.dot(position - anchor) + seen.z;
-            // Not so for what lies behind, for −0, and for what is too far away to be a number.
+            let depth = forward.dot(position - anchor) + anchor_image.z;
+            // Zero for a depth that is negative, −0 or NaN.
             if depth > 0.0 { depth } else { 0.0 }
         };
         self.depths.clear();
@@ -72,16 +75,19 @@ impl DepthOrder {
         }
         self.order.resize(self.depths.len(), 0);
         for (light, depth) in (0..).zip(&self.depths) {
-            let place = &mut self.starts[step.of(*depth)];
-            self.order[*place as usize] = light;
-            *place += 1;
+            let next = &mut self.starts[step.of(*depth)];
+            self.order[*next as usize] = light;
+            *next += 1;
         }
         &self.order
     }
 }
 
-/// The bits of positive floats are in their order, and take equal steps within a power of two.
+/// Converts depths to steps.
+///
+/// The bits of positive floats have the order of the floats, and equal steps within a power of two.
 struct Step {
+    /// The bits of the depth at which the first step begins.
     first: u32,
 }
 
@@ -93,7 +99,7 @@ impl Step {
         }
     }
 
-    /// Less than [`STEPS`] for what is not farther than the farthest.
+    /// The step of a `depth`. Less than [`STEPS`] for a depth of at most the farthest.
     fn of(&self, depth: f32) -> usize {
         let bits = depth.to_bits().saturating_sub(self.first);
         (bits >> (f32::MANTISSA_DIGITS - 1 - MANTISSA_BITS)) as usize

@@ -1,25 +1,29 @@
-//! The lists of a culler that tests exactly.
+//! The list of one depth interval of one tile, with the exact test.
+//!
+//! The *place* of a light is its position in the batch.
 
 use fearless_simd::{Simd, SimdBase, SimdMask};
 
 use super::batch::Chunk;
 use super::lanes::{LANES, load, parts, splat_tile};
-use super::tile_list::{Row, find};
+use super::tile_list::{Row, write_touching};
 use super::{LightBatch, LightLists};
 use crate::num::{F32Lanes, Single};
 use crate::touch::{BoxTest, Frustum, TileBounds};
 
-/// How many lights were tested, and how many of those that pass the box test do not touch the tile.
+/// Counts of the tests for one list.
 pub(super) struct Tested {
+    /// Box tests.
     pub lights: u64,
+    /// Lights that pass the box test and fail the exact test.
     pub rejected: u64,
 }
 
-/// Appends the lights that touch `tile`, exactly, to `lists`.
+/// Appends the lights that touch `tile` by the exact test to `lists`.
 ///
-/// A function of its own, so that culling without it is compiled as if it were not there.
+/// Not inlined, so that culling without the exact test is compiled as if it did not exist.
 #[inline(never)]
-pub(super) fn list_exactly<S: Simd, P: BoxTest>(
+pub(super) fn append_list_exactly<S: Simd, P: BoxTest>(
     simd: S,
     lights: &LightBatch<P>,
     rows: &[Row<P>],
@@ -30,14 +34,14 @@ pub(super) fn list_exactly<S: Simd, P: BoxTest>(
         #[inline(always)]
         || {
             let places = lists.room_for((lights.chunks().len() + 1) * LANES);
-            let place = |chunk: usize, _: &Chunk<P>, part: usize| {
+            let places_of = |chunk: usize, _: &Chunk<P>, part: usize| {
                 let first = (chunk * LANES + part * S::u32s::LEN) as u32;
                 S::u32s::from_slice(simd, &FIRST_PLACES[..S::u32s::LEN]) + first
             };
             let in_lanes = splat_tile(simd, tile);
-            let [passed, tested] = find(simd, lights, rows, &in_lanes, place, places);
-            let listed = keep(simd, lights.chunks(), tile, places, passed);
-            lists.take(listed);
+            let [passed, tested] = write_touching(simd, lights, rows, &in_lanes, places_of, places);
+            let listed = retain_touching(simd, lights.chunks(), tile, places, passed);
+            lists.advance(listed);
             Tested {
                 lights: tested as u64,
                 rejected: (passed - listed) as u64,
@@ -46,7 +50,7 @@ pub(super) fn list_exactly<S: Simd, P: BoxTest>(
     )
 }
 
-/// The places of the lights of the first chunk: a light's place is where it is in the batch.
+/// The places of the lights of the first chunk.
 const FIRST_PLACES: [u32; LANES] = {
     let mut places = [0; LANES];
     let mut place = 0;
@@ -57,30 +61,30 @@ const FIRST_PLACES: [u32; LANES] = {
     places
 };
 
-/// Puts the indices of those lights that touch the tile in place of the first `count` of `places`; gives
-/// how many these are.
+/// Replaces the first `count` of `places` by the indices of those lights that touch `tile`. Returns the
+/// number of these lights.
 #[inline(always)]
-fn keep<S: Simd, P: BoxTest>(
+fn retain_touching<S: Simd, P: BoxTest>(
     simd: S,
     chunks: &[Chunk<P>],
     tile: TileBounds<f32>,
     places: &mut [u32],
     count: usize,
 ) -> usize {
-    let (mut side_by_side, mut end) = (Chunk::nowhere(), 0);
+    let (mut gathered, mut end) = (Chunk::nowhere(), 0);
     for start in (0..count).step_by(LANES) {
         let lanes = LANES.min(count - start);
         for (lane, place) in places[start..][..lanes].iter().enumerate() {
             let place = *place as usize;
-            side_by_side.copy(lane, &chunks[place / LANES], place % LANES);
+            gathered.copy(lane, &chunks[place / LANES], place % LANES);
         }
         for part in 0..parts::<S>() {
             let wanted = ((1_u64 << lanes) - 1) >> (part * S::u32s::LEN);
-            let touching = touching(simd, &side_by_side, part, wanted as u32, tile);
-            let of_part = &side_by_side.lights[part * S::u32s::LEN..][..S::u32s::LEN];
+            let touching = touching(simd, &gathered, part, wanted as u32, tile);
+            let indices = &gathered.lights[part * S::u32s::LEN..][..S::u32s::LEN];
             let chosen = S::mask32s::from_bitmask(simd, touching.into());
-            let chosen = S::u32s::from_slice(simd, of_part).compress(chosen);
-            // Never beyond the places that were read.
+            let chosen = S::u32s::from_slice(simd, indices).compress(chosen);
+            // Does not overwrite places that are still to be read.
             chosen.store_slice(&mut places[end..end + S::u32s::LEN]);
             end += touching.count_ones() as usize;
         }
@@ -88,7 +92,7 @@ fn keep<S: Simd, P: BoxTest>(
     end
 }
 
-/// Which of the `wanted` lights touch the tile, as bits.
+/// The bits of the `wanted` lights of a part of `chunk` that touch `tile`.
 #[inline(always)]
 fn touching<S: Simd, P: BoxTest>(
     simd: S,
@@ -103,19 +107,20 @@ fn touching<S: Simd, P: BoxTest>(
     }
     let frustum = Frustum::new(P::image(&fields), splat_tile(simd, tile).widen());
     let verdict = frustum.first_verdict();
-    let apart = verdict.is_apart | frustum.is_out_of_reach();
-    let mut touching = (!(apart | verdict.is_open)).to_bitmask() as u32 & wanted;
-    let mut open = (verdict.is_open & !apart).to_bitmask() as u32 & wanted;
-    while open != 0 {
-        let lane = open.trailing_zeros();
-        open &= open - 1;
-        let meets = meets(chunk, part * S::u32s::LEN + lane as usize, tile);
-        touching |= u32::from(meets) << lane;
+    let misses = verdict.is_separated | frustum.is_out_of_reach();
+    let mut touching = (!(misses | verdict.is_undecided)).to_bitmask() as u32 & wanted;
+    let mut undecided = (verdict.is_undecided & !misses).to_bitmask() as u32 & wanted;
+    while undecided != 0 {
+        let lane = undecided.trailing_zeros();
+        undecided &= undecided - 1;
+        let touches = touches(chunk, part * S::u32s::LEN + lane as usize, tile);
+        touching |= u32::from(touches) << lane;
     }
     touching
 }
 
+/// Whether the light in `lane` of `chunk` touches `tile` by the exact test.
 #[inline(always)]
-fn meets<P: BoxTest>(chunk: &Chunk<P>, lane: usize, tile: TileBounds<f32>) -> bool {
+fn touches<P: BoxTest>(chunk: &Chunk<P>, lane: usize, tile: TileBounds<f32>) -> bool {
     Frustum::new(P::image(&chunk.fields_of(lane)), tile.widen()).meets_ball()
 }

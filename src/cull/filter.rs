@@ -1,4 +1,4 @@
-//! From the lights of a block to those of a part of it.
+//! The lights of a block that may touch a part of it.
 
 use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdMask, f32x16, mask32x16, u8x64, u32x16};
 
@@ -9,7 +9,7 @@ use crate::num::{F32Lanes, Real};
 use crate::project::Projected;
 use crate::touch::{BoxTest, TileBounds};
 
-/// Which of sixteen chunks reach depths of `tile`, as bits.
+/// The bits of those of sixteen chunks that reach depths of `tile`.
 #[inline(always)]
 pub(super) fn in_depth<S: Simd>(simd: S, reach: &Reach, tile: &TileBounds<F32Lanes<S>>) -> u32 {
     let mut bits = 0;
@@ -35,7 +35,7 @@ pub(super) fn load_fields<S: Simd, P: Projected>(
     fields
 }
 
-/// Which of a chunk's lights may touch `tile`, as bits.
+/// The bits of the lights of `chunk` that may touch `tile`.
 #[inline(always)]
 pub(super) fn touching<S: Simd, P: BoxTest>(
     simd: S,
@@ -51,7 +51,8 @@ pub(super) fn touching<S: Simd, P: BoxTest>(
     bits
 }
 
-/// Copies those of `lights` that may touch `tile` to `kept`, in their order; gives the number of tests.
+/// Replaces `kept` by those of `lights` that may touch `tile`, in the same order. Returns the number of
+/// tests.
 #[inline(always)]
 pub(super) fn filter<S: Simd, P: BoxTest>(
     simd: S,
@@ -59,7 +60,7 @@ pub(super) fn filter<S: Simd, P: BoxTest>(
     tile: &TileBounds<F32Lanes<S>>,
     kept: &mut LightBatch<P>,
 ) -> u64 {
-    let (into, into_reach) = kept.make_room_for(lights);
+    let (to, to_reach) = kept.make_room_for(lights);
     let (mut len, mut tested) = (0, 0);
     for (group, reach) in lights.chunks().chunks(LANES).zip(lights.reach()) {
         let mut candidates = in_depth(simd, reach, tile);
@@ -70,59 +71,59 @@ pub(super) fn filter<S: Simd, P: BoxTest>(
             let bits = touching(simd, &group[index], tile);
             if bits != 0 {
                 let end = len + bits.count_ones() as usize;
-                append(simd, &group[index], bits, into, len);
+                append(simd, &group[index], bits, to, len);
                 for chunk in [len / LANES, (end - 1) / LANES] {
-                    into_reach[chunk / LANES].widen(chunk, reach.of(index));
+                    to_reach[chunk / LANES].widen(chunk, reach.get(index));
                 }
                 len = end;
             }
         }
     }
-    blank(simd, into, len);
+    clear_after(simd, to, len);
     kept.set_len(len);
     u64::from(tested) * LANES as u64
 }
 
-/// Copies the lights of `chunk` that `bits` tell to `into`, from place `start` on.
+/// Copies the lights of `chunk` whose bits are set in `bits` to `to`, from position `start` on.
 #[inline(always)]
 fn append<S: Simd, P: Projected>(
     simd: S,
     chunk: &Chunk<P>,
     bits: u32,
-    into: &mut [Chunk<P>],
+    to: &mut [Chunk<P>],
     start: usize,
 ) {
     if S::f32s::LEN == LANES {
-        append_lanes(simd, chunk, bits, into, start);
+        append_vector(simd, chunk, bits, to, start);
     } else {
-        append_each(chunk, bits, into, start);
+        append_each(chunk, bits, to, start);
     }
 }
 
-/// One light after the other.
+/// [`append`], light by light.
 #[inline(always)]
 fn append_each<P: Projected>(
     chunk: &Chunk<P>,
     mut bits: u32,
-    into: &mut [Chunk<P>],
-    mut place: usize,
+    to: &mut [Chunk<P>],
+    mut position: usize,
 ) {
     while bits != 0 {
         let from = bits.trailing_zeros() as usize % LANES;
         bits &= bits - 1;
-        into[place / LANES].copy(place % LANES, chunk, from);
-        place += 1;
+        to[position / LANES].copy(position % LANES, chunk, from);
+        position += 1;
     }
 }
 
-/// All at once: turned so that they begin at the first free lane, and what does not fit at the first
-/// lane of the next chunk.
+/// [`append`], a vector at a time: the lights are rotated to begin at the first free lane. Those that do not
+/// fit wrap around to the first lanes of the next chunk.
 #[inline(always)]
-fn append_lanes<S: Simd, P: Projected>(
+fn append_vector<S: Simd, P: Projected>(
     simd: S,
     chunk: &Chunk<P>,
     bits: u32,
-    into: &mut [Chunk<P>],
+    to: &mut [Chunk<P>],
     start: usize,
 ) {
     let (index, first) = (start / LANES, start % LANES);
@@ -131,33 +132,33 @@ fn append_lanes<S: Simd, P: Projected>(
     let lanes: u8x64<S> = u32x16::from_slice(simd, &LANE_BYTES)
         .compress(chosen)
         .bitcast();
-    let lanes = lanes.swizzle_dyn(u8x64::from_slice(simd, &TURNS[first]));
-    let [last, next, ..] = &mut into[index..] else {
+    let lanes = lanes.swizzle_dyn(u8x64::from_slice(simd, &ROTATIONS[first]));
+    let [last, next, ..] = &mut to[index..] else {
         return;
     };
     let fields = chunk.fields.as_ref().iter();
-    let places = last.fields.as_mut().iter_mut().zip(next.fields.as_mut());
-    for (field, (last, next)) in fields.zip(places) {
-        let turned = f32x16::from_slice(simd, field).swizzle_dyn(lanes);
-        let merged = taken.select(f32x16::from_slice(simd, last), turned);
+    let targets = last.fields.as_mut().iter_mut().zip(next.fields.as_mut());
+    for (field, (last, next)) in fields.zip(targets) {
+        let rotated = f32x16::from_slice(simd, field).swizzle_dyn(lanes);
+        let merged = taken.select(f32x16::from_slice(simd, last), rotated);
         merged.store_slice(last);
-        turned.store_slice(next);
+        rotated.store_slice(next);
     }
-    let turned = u32x16::from_slice(simd, &chunk.lights).swizzle_dyn(lanes);
-    let merged = taken.select(u32x16::from_slice(simd, &last.lights), turned);
+    let rotated = u32x16::from_slice(simd, &chunk.lights).swizzle_dyn(lanes);
+    let merged = taken.select(u32x16::from_slice(simd, &last.lights), rotated);
     merged.store_slice(&mut last.lights);
-    turned.store_slice(&mut next.lights);
+    rotated.store_slice(&mut next.lights);
 }
 
-/// Lets the lanes from `len` to the end of its chunk touch nothing.
+/// Fills the lanes from position `len` to the end of its chunk with shapes that touch nothing.
 #[inline(always)]
-fn blank<S: Simd, P: Projected>(simd: S, chunks: &mut [Chunk<P>], len: usize) {
+fn clear_after<S: Simd, P: Projected>(simd: S, chunks: &mut [Chunk<P>], len: usize) {
     let taken = (1_u64 << (len % LANES)) - 1;
     let fields = chunks[len / LANES].fields.as_mut().iter_mut();
     for (lanes, nowhere) in fields.zip(P::NOWHERE.as_ref()) {
         for part in 0..parts::<S>() {
-            let of_part = (taken >> (part * S::f32s::LEN)) & ((1 << S::f32s::LEN) - 1);
-            let taken = S::mask32s::from_bitmask(simd, of_part);
+            let bits = (taken >> (part * S::f32s::LEN)) & ((1 << S::f32s::LEN) - 1);
+            let taken = S::mask32s::from_bitmask(simd, bits);
             let nowhere = F32Lanes::new(simd, *nowhere);
             let kept = F32Lanes::select(taken, load(simd, lanes, part), nowhere);
             store(lanes, part, kept);
@@ -165,7 +166,7 @@ fn blank<S: Simd, P: Projected>(simd: S, chunks: &mut [Chunk<P>], len: usize) {
     }
 }
 
-/// The four bytes of each lane's number, as indices of the bytes of a vector.
+/// For each lane, the indices of its four bytes in a vector.
 const LANE_BYTES: [u32; LANES] = {
     let mut lanes = [0; LANES];
     let mut lane = 0;
@@ -176,17 +177,18 @@ const LANE_BYTES: [u32; LANES] = {
     lanes
 };
 
-/// Which byte goes where if all lanes move up by the row's number, and around the end.
-const TURNS: [[u8; 4 * LANES]; LANES] = {
-    let mut turns = [[0; 4 * LANES]; LANES];
-    let mut turn = 0;
-    while turn < LANES {
+/// `ROTATIONS[n]` holds the indices of the bytes of a vector after all lanes are moved up by n, with wrap
+/// around the end.
+const ROTATIONS: [[u8; 4 * LANES]; LANES] = {
+    let mut rotations = [[0; 4 * LANES]; LANES];
+    let mut n = 0;
+    while n < LANES {
         let mut byte = 0;
         while byte < 4 * LANES {
-            turns[turn][byte] = ((byte + 4 * LANES - 4 * turn) % (4 * LANES)) as u8;
+            rotations[n][byte] = ((byte + 4 * LANES - 4 * n) % (4 * LANES)) as u8;
             byte += 1;
         }
-        turn += 1;
+        n += 1;
     }
-    turns
+    rotations
 };

@@ -1,7 +1,7 @@
-//! From lights to the shapes that a batch holds, sixteen at a time.
+//! The bounds and projections of a group of lights, in vectors.
 //!
-//! The numbers of lights are laid side by side, and vectors go over them as the scalar functions go over one
-//! light: the same generic functions, and so the same bits.
+//! The fields of the lights are transposed to lanes. The vectors then run the generic functions that the
+//! scalar functions run for one light, so the results have the same bits.
 
 use core::marker::PhantomData;
 use core::ops::Range;
@@ -16,47 +16,50 @@ use crate::bound::{BoundStrategy, MAX_QUADS, Quads, Shape, ShapeLanes};
 use crate::light::{Roulette, Vpl, Xi};
 use crate::lobe::Lobe;
 use crate::num::{F32Lanes, Quad, Real, Single, Vector3, load_quads};
-use crate::project::{Project, ProjectedLanes};
+use crate::project::{Project, Projected, ProjectedLanes};
 use crate::view::Camera;
 
-/// What shapes are made of.
+/// A kind of input that a batch is built from.
 pub(super) trait BatchInput: Copy {
     /// A light, or a bound and its placement.
     type Item<'a>: Copy;
+    /// The bound of an item.
     type Shape: Project;
-    /// What a light has besides numbers.
+    /// The part of an item that is not numeric.
     type PerLight: Copy;
 
-    /// Quads in use.
+    /// The number of quads in use.
     const QUADS: usize;
 
-    /// Whether an item may reach somewhere: an estimate, which saves the work on those that do not.
+    /// Whether the bound of an item may be other than empty. Items for which this is false are skipped early.
     fn may_reach(item: Self::Item<'_>) -> bool;
 
     fn placement(item: Self::Item<'_>) -> Placement;
+
+    /// The numeric part of an item as quads, and the other part.
     fn to_quads(self, item: Self::Item<'_>) -> (Quads<f32>, Self::PerLight);
 
-    /// Bounds for unit scale and a light at the origin.
+    /// The bounds at unit scale of lights at the origin.
     fn unit_bounds<N: Single>(
         self,
         quads: &Quads<N>,
         per_light: &[Self::PerLight],
     ) -> <Self::Shape as Shape>::Lanes<N>;
 
-    /// Scales of items with this flux and frame parameter.
+    /// The scales of items with this flux and frame parameter.
     fn scale<N: Single>(roulette: &Roulette, flux: N, parameter: N) -> N;
 }
 
-/// Where a bound is placed, and the numbers that its scale follows from.
+/// The position of a bound, and the numbers from which its scale is computed.
 pub(super) struct Placement {
     position: Vec3,
     /// Φ
     flux: f32,
-    /// Of the frame: ξ, or the scale itself.
+    /// The parameter of the frame: ξ, or the scale itself.
     parameter: f32,
 }
 
-/// Lights, bounded by a strategy.
+/// Lights that are bounded by a strategy.
 pub(super) struct Lights<L, B>(B, PhantomData<L>);
 
 impl<L, B: Copy> Clone for Lights<L, B> {
@@ -155,42 +158,43 @@ impl<B: Project> BatchInput for KeptBounds<B> {
     }
 }
 
-/// What all lights of a frame share.
+/// The parameters that all lights of a frame share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     pub roulette: Roulette,
     pub camera: Camera,
 }
 
-/// Chunks made in a row: while one waits for its roots, the next can begin.
+/// The number of chunks of a group. The processor can begin one while another waits for its roots.
 const CHUNKS: usize = u64::BITS as usize / LANES;
-/// Lights of a group, as many as an integer has bits.
+/// The number of lights of a group: the bits of a `u64`.
 pub(super) const GROUP: usize = CHUNKS * LANES;
 
-/// Lights, and the shapes that are made of them.
+/// A group of lights, and the projected shapes that are computed from them.
 #[repr(C, align(64))]
 pub(super) struct Group<I: BatchInput> {
     input: I,
-    /// Light by light, since four numbers are copied at once: position and Φ.
+    /// The position and Φ of each light. Not yet transposed, since a quad is copied at once.
     placements: [Quad<f32>; GROUP],
     quads: [[Quad<f32>; GROUP]; MAX_QUADS],
     parameters: [f32; GROUP],
     per_light: [I::PerLight; GROUP],
     lights: [u32; GROUP],
-    made: [Made<<I::Shape as Project>::Projected>; CHUNKS],
+    projected: [ProjectedChunk<<I::Shape as Project>::Projected>; CHUNKS],
 }
 
-/// Shapes of sixteen lights.
+/// The projected shapes of sixteen lights.
 #[derive(Clone, Copy)]
-struct Made<P: crate::project::Projected> {
+struct ProjectedChunk<P: Projected> {
     chunk: Chunk<P>,
-    /// Those that have a shape, as bits, and the depths that these reach.
-    shaped: u32,
+    /// The bits of the lights whose shape is not empty.
+    non_empty: u32,
+    /// The range of depths that these lights reach.
     reach: [f32; 2],
 }
 
 impl<I: BatchInput> Group<I> {
-    /// A group with `item` in all lanes.
+    /// Creates a group with `item` in all lanes.
     #[inline(always)]
     pub fn splat(input: I, item: I::Item<'_>) -> Self {
         let Placement {
@@ -198,14 +202,14 @@ impl<I: BatchInput> Group<I> {
             flux,
             parameter,
         } = I::placement(item);
-        let (of_item, per_light) = input.to_quads(item);
+        let (item_quads, per_light) = input.to_quads(item);
         let mut quads = [[[0.0; 4]; GROUP]; MAX_QUADS];
-        for (lanes, quad) in quads[..I::QUADS].iter_mut().zip(of_item) {
+        for (lanes, quad) in quads[..I::QUADS].iter_mut().zip(item_quads) {
             *lanes = [quad; GROUP];
         }
-        let none = Made {
+        let none = ProjectedChunk {
             chunk: Chunk::nowhere(),
-            shaped: 0,
+            non_empty: 0,
             reach: [0.0; 2],
         };
         Self {
@@ -215,11 +219,11 @@ impl<I: BatchInput> Group<I> {
             parameters: [parameter; GROUP],
             per_light: [per_light; GROUP],
             lights: [0; GROUP],
-            made: [none; CHUNKS],
+            projected: [none; CHUNKS],
         }
     }
 
-    /// Puts an item in `lane` < [`GROUP`].
+    /// Stores an item in `lane` < [`GROUP`].
     #[inline(always)]
     pub fn set(&mut self, lane: usize, light: u32, item: I::Item<'_>) {
         let lane = lane % GROUP;
@@ -238,22 +242,23 @@ impl<I: BatchInput> Group<I> {
         self.lights[lane] = light;
     }
 
-    /// Makes the shapes of these lanes, at least one.
+    /// Computes the shapes of `lanes`, of which there is at least one.
     #[inline(always)]
-    pub fn shape<S: Simd>(&mut self, simd: S, lanes: &Range<usize>, frame: &Frame) {
-        // From bit 0, which is the first lane.
+    pub fn project<S: Simd>(&mut self, simd: S, lanes: &Range<usize>, frame: &Frame) {
+        // Bit 0 is the first lane.
         let wanted = (u64::MAX >> (GROUP - lanes.end)) & (u64::MAX << lanes.start);
         for chunk in 0..lanes.end.div_ceil(LANES) {
-            self.shape_chunk(simd, chunk, wanted, frame);
+            self.project_chunk(simd, chunk, wanted, frame);
         }
     }
 
+    /// Computes the shapes of one chunk. Those whose bits are not set in `wanted` count as empty.
     #[inline(always)]
-    fn shape_chunk<S: Simd>(&mut self, simd: S, chunk: usize, wanted: u64, frame: &Frame) {
+    fn project_chunk<S: Simd>(&mut self, simd: S, chunk: usize, wanted: u64, frame: &Frame) {
         let mut nearest = F32Lanes::new(simd, f32::INFINITY);
         let mut farthest = F32Lanes::new(simd, f32::NEG_INFINITY);
-        let made = &mut self.made[chunk];
-        made.shaped = 0;
+        let projected = &mut self.projected[chunk];
+        projected.non_empty = 0;
         for part in 0..parts::<S>() {
             let first = chunk * LANES + part * S::f32s::LEN;
             let lanes = first..first + S::f32s::LEN;
@@ -268,28 +273,28 @@ impl<I: BatchInput> Group<I> {
             let reaches = !unit.is_empty() & scale.is_positive();
             let placed = unit.placed(Vector3::new(x, y, z), scale);
             let ProjectedLanes { fields, reach } = I::Shape::project_lanes(placed, &frame.camera);
-            let of_chunk = made.chunk.fields.as_mut().iter_mut();
-            for (lanes, vector) in of_chunk.zip(fields.as_ref()) {
+            let chunk_fields = projected.chunk.fields.as_mut().iter_mut();
+            for (lanes, vector) in chunk_fields.zip(fields.as_ref()) {
                 store(lanes, part, *vector);
             }
 
-            let of_part = (wanted >> first) & ((1 << S::f32s::LEN) - 1);
-            let shaped = reaches & S::mask32s::from_bitmask(simd, of_part);
+            let wanted = (wanted >> first) & ((1 << S::f32s::LEN) - 1);
+            let non_empty = reaches & S::mask32s::from_bitmask(simd, wanted);
             let [near, far] = reach;
-            nearest = F32Lanes::select(shaped, nearest.min(near), nearest);
-            farthest = F32Lanes::select(shaped, farthest.max(far), farthest);
-            made.shaped |= (shaped.to_bitmask() as u32) << (part * S::f32s::LEN);
+            nearest = F32Lanes::select(non_empty, nearest.min(near), nearest);
+            farthest = F32Lanes::select(non_empty, farthest.max(far), farthest);
+            projected.non_empty |= (non_empty.to_bitmask() as u32) << (part * S::f32s::LEN);
         }
-        made.reach = [nearest.0.reduce_min(), farthest.0.reduce_max()];
+        projected.reach = [nearest.0.reduce_min(), farthest.0.reduce_max()];
         let lights = &self.lights[chunk * LANES..][..LANES];
-        made.chunk.lights.copy_from_slice(lights);
+        projected.chunk.lights.copy_from_slice(lights);
     }
 
-    /// Adds the shapes that were made of the lanes before `end` to `batch`.
+    /// Adds the shapes of the lanes before `end` that are not empty to `batch`.
     #[inline(always)]
     pub fn append_to(&self, batch: &mut LightBatch<<I::Shape as Project>::Projected>, end: usize) {
-        for made in &self.made[..end.div_ceil(LANES)] {
-            batch.append(&made.chunk, made.shaped, made.reach);
+        for projected in &self.projected[..end.div_ceil(LANES)] {
+            batch.append(&projected.chunk, projected.non_empty, projected.reach);
         }
     }
 }

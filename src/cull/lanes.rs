@@ -1,17 +1,17 @@
-//! Sixteen lights side by side, and how a vector of any width goes over them.
+//! Sixteen lights side by side, processed by vectors of any width.
 
 use fearless_simd::{Simd, SimdBase};
 
 use crate::num::{F32Lanes, MAX_LANES};
 use crate::touch::TileBounds;
 
-/// Lights in a chunk: as many as the widest vectors have lanes.
+/// The number of lights in a chunk: the lanes of the widest vectors.
 pub(super) const LANES: usize = MAX_LANES;
 
-/// One number of each of sixteen lights.
+/// One value for each of sixteen lights.
 pub(super) type Lanes<T = f32> = [T; LANES];
 
-/// Vectors of this width in a chunk.
+/// The number of vectors of this width in a chunk.
 pub(super) const fn parts<S: Simd>() -> usize {
     LANES / S::f32s::LEN
 }
@@ -25,6 +25,7 @@ pub(super) fn load<S: Simd>(simd: S, lanes: &Lanes, part: usize) -> F32Lanes<S> 
     ))
 }
 
+/// Stores the `part`-th vector of `lanes`.
 #[inline(always)]
 pub(super) fn store<S: Simd>(lanes: &mut Lanes, part: usize, vector: F32Lanes<S>) {
     let part = &mut lanes[part * S::f32s::LEN..][..S::f32s::LEN];

@@ -1,9 +1,9 @@
 use alloc::vec::Vec;
 
-/// For each tile and depth interval the indices of the lights that may touch it.
+/// For each depth interval of each tile, the indices of the lights that may touch it.
 ///
-/// Two arrays, as a GPU reads them: [`ranges`](Self::ranges) says where each list begins and ends in
-/// [`lights`](Self::lights). Keeps its memory from frame to frame.
+/// Stored as two arrays, which a GPU can read: [`ranges`](Self::ranges) holds where each list begins and ends
+/// in [`lights`](Self::lights). Keeps its memory from frame to frame.
 ///
 /// ```
 /// use stochastic_light_culling::{
@@ -35,15 +35,15 @@ pub struct LightLists {
     columns: usize,
     intervals: usize,
     ranges: Vec<[u32; 2]>,
-    /// Longer than what is in use, so that whole vectors can be written.
+    /// Longer than `len`, so that whole vectors can be written.
     lights: Vec<u32>,
     len: usize,
-    /// Whether `lights` became longer since the lists were empty.
+    /// Whether `lights` grew since [`finish`](Self::finish).
     has_grown: bool,
 }
 
 impl LightLists {
-    /// Lists of no tiles.
+    /// Creates lists for no tiles. Does not allocate.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -56,15 +56,15 @@ impl LightLists {
         }
     }
 
-    /// The lights that may touch `tile` in its `interval`-th depth interval, in the order of their batch.
-    /// Empty for a tile or an interval that does not exist.
+    /// The indices of the lights that may touch `tile` = \[column, row\] in its `interval`-th depth interval,
+    /// in the order of the batch. Empty for a tile or an interval that does not exist.
     #[must_use]
     pub fn of(&self, tile: [u32; 2], interval: u32) -> &[u32] {
         let ([x, y], interval) = (tile.map(|n| n as usize), interval as usize);
         if x >= self.columns || interval >= self.intervals {
             return &[];
         }
-        // Before the place is reckoned, which could overflow.
+        // Checked first, since the computation of the slot can overflow.
         if y >= self.ranges.len() / (self.columns * self.intervals) {
             return &[];
         }
@@ -72,21 +72,22 @@ impl LightLists {
         &self.lights[start..end]
     }
 
-    /// Where the list of each depth interval of each tile, row by row, begins and ends in
-    /// [`lights`](Self::lights): the `k`-th of n intervals of tile (x, y), with `w` tiles across, is at
-    /// `(y w + x) n + k`.
+    /// The start and end of each list in [`lights`](Self::lights).
+    ///
+    /// With w tiles in a row and n intervals in a tile, the list of the k-th interval of tile (x, y) is at
+    /// index (y w + x) n + k. An empty list is \[0, 0\].
     #[must_use]
     pub fn ranges(&self) -> &[[u32; 2]] {
         &self.ranges
     }
 
-    /// The lists, one after the other, in no particular order of the tiles.
+    /// The indices of the lights of all lists, one list after the other, in no particular order of the tiles.
     #[must_use]
     pub fn lights(&self) -> &[u32] {
         &self.lights[..self.len]
     }
 
-    /// How many lights all lists hold together.
+    /// The number of lights in all lists together.
     #[must_use]
     pub fn len(&self) -> usize {
         self.len
@@ -98,7 +99,7 @@ impl LightLists {
         self.len == 0
     }
 
-    /// Empties the lists and makes one for each slot of a grid.
+    /// Clears the lists and creates an empty one for each slot of a grid.
     pub(super) fn reset(&mut self, [columns, rows]: [usize; 2], intervals: usize) {
         self.columns = columns;
         self.intervals = intervals;
@@ -107,12 +108,12 @@ impl LightLists {
         self.ranges.resize(columns * rows * intervals, [0; 2]);
     }
 
-    /// Appends the lists of `area` alone to these, which are of a grid.
+    /// Appends `lists`, which are of `area` alone, to these, which are of the whole grid.
     #[cfg(feature = "rayon")]
     pub(super) fn append(&mut self, area: super::tile_depths::Area, lists: &Self) {
         let start = self.len;
         self.room_for(lists.len)[..lists.len].copy_from_slice(lists.lights());
-        self.take(lists.len);
+        self.advance(lists.len);
         for (y, row) in lists
             .ranges
             .chunks(lists.columns * lists.intervals)
@@ -127,12 +128,12 @@ impl LightLists {
         }
     }
 
-    /// Where the ranges of a tile begin.
+    /// The slot of the first depth interval of a tile: its index in `ranges`.
     pub(super) fn slot(&self, [x, y]: [usize; 2]) -> usize {
         (y * self.columns + x) * self.intervals
     }
 
-    /// The places not yet in use, at least `count` of them.
+    /// The part of `lights` that is not in use, at least `count` long.
     pub(super) fn room_for(&mut self, count: usize) -> &mut [u32] {
         let end = self.len + count;
         if self.lights.len() < end {
@@ -142,7 +143,8 @@ impl LightLists {
         &mut self.lights[self.len..]
     }
 
-    /// Leaves room for frames with half as many lights again, if there was none for this one.
+    /// Reserves room for half as many lights again, if the lists grew. So frames after the first seldom
+    /// allocate.
     pub(super) fn finish(&mut self) {
         if self.has_grown {
             self.room_for(self.len / 2);
@@ -150,23 +152,25 @@ impl LightLists {
         }
     }
 
-    /// Takes the first `count` of the places not yet in use.
-    pub(super) fn take(&mut self, count: usize) {
+    /// Adds the first `count` elements that are not in use to the lists.
+    pub(super) fn advance(&mut self, count: usize) {
         self.len += count;
     }
 
-    /// Says that the list of `slot` begins at `start` and ends here. Empty lists are all at the beginning,
-    /// whether they were looked into or not.
-    pub(super) fn end(&mut self, slot: usize, start: usize) {
+    /// Sets the list of `slot` to begin at `start` and to end here. An empty list is \[0, 0\], so that
+    /// it does not depend on which tests were skipped.
+    pub(super) fn set_range(&mut self, slot: usize, start: usize) {
         let range = [start as u32, self.len as u32];
         self.ranges[slot] = if start < self.len { range } else { [0; 2] };
     }
 }
 
-/// Equal if the same lights are in the same places.
+/// Equal if `ranges` and `lights` are.
 impl PartialEq for LightLists {
     fn eq(&self, other: &Self) -> bool {
-        let of = |lists: &Self| [lists.columns, lists.intervals];
-        of(self) == of(other) && self.ranges == other.ranges && self.lights() == other.lights()
+        let shape = |lists: &Self| [lists.columns, lists.intervals];
+        shape(self) == shape(other)
+            && self.ranges == other.ranges
+            && self.lights() == other.lights()
     }
 }

@@ -1,25 +1,35 @@
-//! Many lights against many tiles.
+//! Culling of many lights against many tiles.
 //!
-//! # What is done when
+//! # Stages
 //!
-//! The screen is cut into blocks, those into smaller blocks, and the last ones into tiles. Of the lights
-//! that may touch a block, those that may touch a part of it are copied out, sixteen at a time, and only
-//! they go on to that part. Blocks are tested as tiles are, by the box around all that their tiles see.
+//! 1. [`BatchBuilder`] turns lights into a [`LightBatch`]. A group of 64 lights (`group`) is transposed, so
+//!    that each vector holds one field of several lights. The vectors then run the generic functions that
+//!    scalar code runs: bound, placement, projection.
+//! 2. [`TileDepths`] holds the slopes of a grid of tiles and the depth intervals of each tile.
+//! 3. [`Culler`] subdivides the grid into blocks, those into smaller blocks, and the last ones into tiles
+//!    (`block`). For each block, `filter` copies the lights that may touch it, so that only these are tested
+//!    against its parts. For each depth interval of each tile, `tile_list` appends the indices of the lights
+//!    that may touch it to [`LightLists`]. `exact` does the same with the exact test after the box test.
+//! 4. `parallel` gives blocks to threads and concatenates their lists.
 //!
-//! Before that, lights become bounds and bounds become shapes, sixteen at a time as well (`group`).
+//! # Layout
 //!
-//! Of each sixteen lights the range of depths that they reach is known, and a block or a tile that sees
-//! no such depth passes over them with a sixteenth of a comparison. That is worth most if neighbours in
-//! a batch are neighbours in depth: see [`LightBatch`].
+//! A [chunk](batch::Chunk) holds sixteen lights, as many as the widest vectors have lanes: an array for each
+//! field. Narrower vectors process a chunk in parts, so batches and lists do not depend on the processor.
 //!
-//! # Why no light is lost
+//! Each chunk has the range of depths that its lights reach. One comparison of a vector finds which of
+//! sixteen chunks reach the depths of a tile; the others are skipped. That is worth most if lights that are
+//! neighbours in a batch are neighbours in depth: see [`DepthOrder`].
 //!
-//! The lanes of a vector run the function that [`TileTest::touches`](crate::TileTest::touches) runs, so the
-//! lists are those of the scalar test. A block holds its tiles' rectangles and depths,
-//! and every operation of the test is monotone, as is rounding: what touches a tile touches its block,
-//! bit for bit, without any margin. The shapes have the bits that the scalar functions give. What
-//! the exact test then rejects is its own promise: see
-//! [`TileTest::touches_exactly`](crate::TileTest::touches_exactly).
+//! # No light is lost
+//!
+//! - The shapes in a batch are those of the scalar functions, bit for bit.
+//! - Each lane runs the function that [`touches`](crate::TileTest::touches) runs, so lists are those of the
+//!   scalar test.
+//! - The rectangle and depths of a block hold those of its tiles. Every operation of the test is monotone,
+//!   and so is rounding. So whatever touches a tile touches its block, bit for bit, without a margin.
+//! - The range of depths of a chunk holds every depth at which the test finds one of its lights.
+//! - The exact test has its own promise: see [`touches_exactly`](crate::TileTest::touches_exactly).
 
 mod batch;
 mod block;

@@ -1,16 +1,16 @@
-//! The same on many cores: blocks of tiles side by side, their lists put one after the other.
+//! Culling on many cores: threads cull blocks of tiles, and their lists are concatenated.
 
 use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
 use super::block::Scratch;
-use super::culler::counted;
+use super::culler::finish;
 use super::tile_depths::Area;
 use super::{CullCounters, Culler, LightBatch, LightLists, TileDepths};
 use crate::base::Error;
 use crate::touch::BoxTest;
 
-/// What culls one block at a time.
+/// The memory and the lists of one block of tiles.
 #[derive(Clone, Debug)]
 pub(super) struct Worker<P: BoxTest> {
     area: Area,
@@ -19,10 +19,11 @@ pub(super) struct Worker<P: BoxTest> {
 }
 
 impl<P: BoxTest + Send + Sync> Culler<P> {
-    /// What [`cull`](Self::cull) does, on the threads of rayon's pool: the same lists in the same order.
+    /// Does what [`cull`](Self::cull) does on the threads of rayon's current pool. The lists are the same, in
+    /// the same order.
     ///
-    /// Worth it for thousands of tiles. Where a frame has many small grids, such as the subregions of
-    /// interleaved sampling, let each thread cull some of them with a culler of its own.
+    /// Worth it for thousands of tiles. For a frame with many small grids, such as the subregions of
+    /// interleaved sampling, let each thread cull some of the grids with a culler of its own.
     ///
     /// ```
     /// use stochastic_light_culling::{
@@ -58,16 +59,16 @@ impl<P: BoxTest + Send + Sync> Culler<P> {
         lists: &mut LightLists,
     ) -> Result<CullCounters, Error> {
         let all = tiles.all();
-        let levels = if self.blocks { all.levels() } else { 0 };
+        let levels = if self.use_blocks { all.levels() } else { 0 };
         let Some(levels) = levels.checked_sub(2) else {
             return self.cull(batch, tiles, lists);
         };
-        let areas = all.parts().flat_map(Area::parts);
+        let areas = all.subdivide().flat_map(Area::subdivide);
         let count = self.fill_workers(areas, levels + 1);
         let workers = &mut self.workers[..count];
-        let (level, exact) = (self.level, self.scratch.exact);
+        let (level, is_exact) = (self.level, self.scratch.is_exact);
         workers.par_iter_mut().for_each(|worker| {
-            worker.scratch.exact = exact;
+            worker.scratch.is_exact = is_exact;
             worker.cull(level, batch, tiles);
         });
         lists.reset(all.size(), tiles.intervals() as usize);
@@ -79,10 +80,10 @@ impl<P: BoxTest + Send + Sync> Culler<P> {
             counters.empty += worker.scratch.counters.empty;
             counters.rejected_exactly += worker.scratch.counters.rejected_exactly;
         }
-        counted(counters, tiles, lists)
+        finish(counters, tiles, lists)
     }
 
-    /// Gives each of `areas`, which are to be cut `levels` times, to a worker; how many there are.
+    /// Assigns each of `areas`, which are to be subdivided `levels` times, to a worker. Returns their number.
     fn fill_workers(&mut self, areas: impl Iterator<Item = Area>, levels: usize) -> usize {
         let mut count = 0;
         for area in areas {
@@ -103,6 +104,7 @@ impl<P: BoxTest + Send + Sync> Culler<P> {
 }
 
 impl<P: BoxTest> Worker<P> {
+    /// Fills the lists of the area.
     fn cull(&mut self, level: Level, batch: &LightBatch<P>, tiles: &TileDepths) {
         let Self {
             area,

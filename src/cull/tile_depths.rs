@@ -4,12 +4,12 @@ use crate::base::Error;
 use crate::touch::TileBounds;
 use crate::view::{Camera, DepthInterval, TileGrid, TileRectangle};
 
-/// A grid of tiles and the depths that each of them sees, in one interval or in several.
+/// A grid of tiles, and for each tile one or more depth intervals that hold its surfaces.
 ///
 /// For *tiled* culling each tile has its own intervals, such as the two of
-/// [`modified_half_z`](DepthInterval::modified_half_z). For *clustered* culling all tiles share their
-/// slices, such as [`exponential_slices`](DepthInterval::exponential_slices), of which those without
-/// surfaces may be left out.
+/// [`modified_half_z`](DepthInterval::modified_half_z). For *clustered* culling all tiles have the same
+/// slices, such as [`exponential_slices`](DepthInterval::exponential_slices). Those without surfaces can be
+/// `None`.
 ///
 /// ```
 /// use stochastic_light_culling::{Camera, DepthInterval, TileDepths, TileGrid, glam::Vec3};
@@ -28,43 +28,46 @@ use crate::view::{Camera, DepthInterval, TileGrid, TileRectangle};
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileDepths {
     intervals: usize,
-    /// The slopes of each column, and of each row.
+    /// The slopes x/z of each column.
     columns: Vec<[f32; 2]>,
+    /// The slopes y/z of each row.
     rows: Vec<[f32; 2]>,
-    /// Tile by tile, row by row.
+    /// The depth intervals, tile by tile and row by row.
     depths: Vec<[f32; 2]>,
-    /// Around all of a tile's.
-    around: Vec<[f32; 2]>,
+    /// For each tile, the hull of its depth intervals.
+    hulls: Vec<[f32; 2]>,
 }
 
-/// Tiles in a row or a column.
-const MOST_IN_A_ROW: u32 = 1 << 16;
-/// Depth intervals of all tiles together: within what a vector can hold where pointers have 32 bits.
-const MOST_SLOTS: u64 = 1 << 27;
+/// Upper limit of the tiles in a row or a column.
+const MAX_TILES_IN_A_ROW: u32 = 1 << 16;
+/// Upper limit of the depth intervals of all tiles. A vector can hold as many if pointers have 32 bits.
+const MAX_SLOTS: u64 = 1 << 27;
+/// A block of at most so many tiles, in each direction, is not subdivided.
+const MAX_UNDIVIDED: usize = 5;
 
-/// No interval: it ends before it begins.
+/// The interval of no depths, which ends before it begins.
 pub(super) const NONE: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
 impl TileDepths {
-    /// The tiles of `grid` that `camera` sees, each with room for `intervals` depth intervals, all of
-    /// which are missing at first.
+    /// Creates the tiles of `grid` in the view of `camera`, each with room for `intervals` depth intervals.
+    /// At first all intervals are missing, and no light touches any tile.
     ///
     /// # Errors
     ///
-    /// [`Error::Size`] if there are no intervals, more than 2¹⁶ tiles in a row or a column, or more than 2²⁷
-    /// intervals in all tiles together. That many take 2 GiB at most.
+    /// [`Error::Size`] if `intervals` is zero, or there are more than 2¹⁶ tiles in a row or a column, or more
+    /// than 2²⁷ intervals in all tiles together. So many intervals take at most 2 GiB.
     pub fn new(grid: &TileGrid, camera: &Camera, intervals: u32) -> Result<Self, Error> {
         Self::from_rectangles(grid.size(), intervals, |tile| camera.tile(grid, tile))
     }
 
-    /// A grid of `size` = \[columns, rows\] tiles of which `rectangle` says what they cover.
+    /// Creates a grid of `size` = \[columns, rows\] tiles whose slopes are given by `rectangle`.
     ///
-    /// Only the tiles of the first row and of the first column are asked for: those of a column share their
-    /// slopes across, those of a row their slopes down.
+    /// All tiles of a column have the same slopes x/z, and all tiles of a row the same slopes y/z. So
+    /// `rectangle` is called only for the tiles of the first row and the first column.
     ///
     /// # Errors
     ///
-    /// [`Error::Size`] if there are no tiles or no intervals, or more than [`new`](Self::new) takes.
+    /// [`Error::Size`] if there are no tiles or no intervals, or more than [`new`](Self::new) accepts.
     pub fn from_rectangles(
         size: [u32; 2],
         intervals: u32,
@@ -75,14 +78,15 @@ impl TileDepths {
             columns: Vec::new(),
             rows: Vec::new(),
             depths: Vec::new(),
-            around: Vec::new(),
+            hulls: Vec::new(),
         };
         tiles.set_rectangles(size, rectangle)?;
         Ok(tiles)
     }
 
-    /// Renews the tiles for a frame with another grid or camera: jitter, zoom, dynamic resolution. All depth
-    /// intervals are missing afterwards. Allocates nothing unless there are more tiles than ever before.
+    /// Replaces the tiles for a frame with another grid or camera, such as with jitter, zoom or dynamic
+    /// resolution. All depth intervals are missing afterwards. Allocates only if there are more tiles than
+    /// ever before.
     ///
     /// # Errors
     ///
@@ -91,8 +95,8 @@ impl TileDepths {
         self.set_rectangles(grid.size(), |tile| camera.tile(grid, tile))
     }
 
-    /// [`set_view`](Self::set_view) for tiles of which `rectangle` says what they cover, as
-    /// [`from_rectangles`](Self::from_rectangles) has it.
+    /// Replaces the tiles by those that [`from_rectangles`](Self::from_rectangles) creates, as
+    /// [`set_view`](Self::set_view) does.
     ///
     /// # Errors
     ///
@@ -103,9 +107,9 @@ impl TileDepths {
         rectangle: impl Fn([u32; 2]) -> TileRectangle,
     ) -> Result<(), Error> {
         let tiles = u64::from(size[0]) * u64::from(size[1]);
-        // The product of two fits, but not of three.
+        // The product of two `u32` fits a `u64`. That of three can overflow.
         let slots = tiles.saturating_mul(self.intervals as u64);
-        if slots == 0 || slots > MOST_SLOTS || size[0].max(size[1]) > MOST_IN_A_ROW {
+        if slots == 0 || slots > MAX_SLOTS || size[0].max(size[1]) > MAX_TILES_IN_A_ROW {
             return Err(Error::Size {
                 quantity: "grid of tiles",
                 value: size,
@@ -122,48 +126,50 @@ impl TileDepths {
             .extend(rows.map(|tile| [tile.min().y, tile.max().y]));
         self.depths.clear();
         self.depths.resize(slots as usize, NONE);
-        self.around.clear();
-        self.around.resize(tiles as usize, NONE);
+        self.hulls.clear();
+        self.hulls.resize(tiles as usize, NONE);
         Ok(())
     }
 
-    /// From the least to the greatest slope x/z of each column.
+    /// The least and greatest slope x/z of each column.
     #[must_use]
     pub fn columns(&self) -> &[[f32; 2]] {
         &self.columns
     }
 
-    /// From the least to the greatest slope y/z of each row.
+    /// The least and greatest slope y/z of each row.
     #[must_use]
     pub fn rows(&self) -> &[[f32; 2]] {
         &self.rows
     }
 
     /// The near and far depth of each interval of each tile, in the order of
-    /// [`LightLists::ranges`](crate::LightLists::ranges); \[∞, −∞\] of one that is missing.
+    /// [`LightLists::ranges`](crate::LightLists::ranges). \[∞, −∞\] for an interval that is missing.
     #[must_use]
     pub fn depths(&self) -> &[[f32; 2]] {
         &self.depths
     }
 
-    /// How many tiles there are, across and down.
+    /// The number of tiles, \[columns, rows\].
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         [self.columns.len() as u32, self.rows.len() as u32]
     }
 
-    /// How many depth intervals a tile has room for.
+    /// The number of depth intervals for which each tile has room.
     #[must_use]
     pub fn intervals(&self) -> u32 {
         self.intervals as u32
     }
 
-    /// Gives `tile` these depth intervals, in their order, and no others; `None` is one without
-    /// surfaces, which no light touches. Intervals beyond [`intervals`](Self::intervals) are left out.
+    /// Replaces the depth intervals of `tile` = \[column, row\], in this order.
+    ///
+    /// `None` is an interval without surfaces, which no light touches; so are intervals that the iterator
+    /// does not give. Those after the first [`intervals`](Self::intervals) are ignored.
     ///
     /// # Panics
     ///
-    /// If there is no such tile.
+    /// If `tile` is outside the grid.
     #[track_caller]
     pub fn set(
         &mut self,
@@ -173,21 +179,22 @@ impl TileDepths {
         let [x, y] = self.index_of(tile);
         let index = y * self.columns.len() + x;
         let first = index * self.intervals;
-        let mut around = NONE;
+        let mut hull = NONE;
         let mut intervals = intervals.into_iter();
         for depths in &mut self.depths[first..][..self.intervals] {
             let interval: Option<DepthInterval> = intervals.next().and_then(Into::into);
             *depths = interval.map_or(NONE, |interval| [interval.near(), interval.far()]);
-            around = joined(around, *depths);
+            hull = hull_of(hull, *depths);
         }
-        self.around[index] = around;
+        self.hulls[index] = hull;
     }
 
-    /// Which of the intervals of `tile` holds `depth`, the first of them if there are several.
+    /// The index of the first interval of `tile` = \[column, row\] that holds `depth`. `None` if there is
+    /// none, or `depth` is NaN.
     ///
     /// # Panics
     ///
-    /// If there is no such tile.
+    /// If `tile` is outside the grid.
     #[track_caller]
     #[must_use]
     pub fn interval_of(&self, tile: [u32; 2], depth: f32) -> Option<u32> {
@@ -208,12 +215,13 @@ impl TileDepths {
         [x, y]
     }
 
-    /// Whether no interval of any tile has surfaces.
+    /// Whether all depth intervals of all tiles are missing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.around.iter().all(|depths| *depths == NONE)
+        self.hulls.iter().all(|depths| *depths == NONE)
     }
 
+    /// The area of the whole grid.
     pub(super) fn all(&self) -> Area {
         Area {
             min: [0; 2],
@@ -221,10 +229,12 @@ impl TileDepths {
         }
     }
 
+    /// The slopes x/z of column `x`.
     pub(super) fn across(&self, x: usize) -> [f32; 2] {
         self.columns[x]
     }
 
+    /// The slopes y/z of row `y`.
     pub(super) fn down(&self, y: usize) -> [f32; 2] {
         self.rows[y]
     }
@@ -235,35 +245,34 @@ impl TileDepths {
         &self.depths[first..][..self.intervals]
     }
 
-    /// The slopes across and down, and the depths, that hold those of all tiles of `area`, if there are
-    /// any depths.
-    pub(super) fn around(&self, area: Area) -> Option<TileBounds<f32>> {
+    /// The bounds that hold those of all tiles of `area`. `None` if no tile has depths.
+    pub(super) fn bounds_of(&self, area: Area) -> Option<TileBounds<f32>> {
         let [columns, rows] = [0, 1].map(|i| area.min[i]..area.max[i]);
         let mut depths = NONE;
         for y in rows.clone() {
             let first = y * self.columns.len();
-            let row = &self.around[first + columns.start..first + columns.end];
-            depths = row.iter().copied().fold(depths, joined);
+            let row = &self.hulls[first + columns.start..first + columns.end];
+            depths = row.iter().copied().fold(depths, hull_of);
         }
         let across = self.columns[columns].iter().copied();
         let down = self.rows[rows].iter().copied();
         (depths != NONE).then(|| TileBounds {
-            across: across.fold(NONE, joined),
-            down: down.fold(NONE, joined),
+            across: across.fold(NONE, hull_of),
+            down: down.fold(NONE, hull_of),
             depths,
         })
     }
 }
 
-/// The range that holds both. There is no NaN here, which `f32::min` would take care of.
-fn joined(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
+/// The smallest range that holds both. Faster than `f32::min` and `f32::max`, since there is no NaN here.
+fn hull_of(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
     [
         if b[0] < a[0] { b[0] } else { a[0] },
         if b[1] > a[1] { b[1] } else { a[1] },
     ]
 }
 
-/// A block of tiles: from `min`, included, to `max`, not included.
+/// A rectangle of tiles, from `min` (inclusive) to `max` (exclusive), each \[column, row\].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Area {
     pub min: [usize; 2],
@@ -279,20 +288,20 @@ impl Area {
         self.size() == tiles.all().size()
     }
 
-    /// How many times it is cut until its parts have few tiles.
+    /// The number of times that the area is subdivided until its parts have few tiles.
     pub fn levels(self) -> usize {
         let mut levels = 0;
         let mut size = self.size();
-        while size.iter().any(|n| *n > FEW_TILES) {
+        while size.iter().any(|n| *n > MAX_UNDIVIDED) {
             levels += 1;
-            size = size.map(part_of);
+            size = size.map(part_len);
         }
         levels
     }
 
-    /// Its parts, row by row.
-    pub fn parts(self) -> impl Iterator<Item = Self> {
-        let part = self.size().map(part_of);
+    /// Iterates over at most 3×3 parts of the area, row by row.
+    pub fn subdivide(self) -> impl Iterator<Item = Self> {
+        let part = self.size().map(part_len);
         let cuts = move |i: usize| {
             (self.min[i]..self.max[i])
                 .step_by(part[i])
@@ -307,10 +316,8 @@ impl Area {
     }
 }
 
-/// A block of no more tiles than this, across and down, is not cut into smaller blocks.
-const FEW_TILES: usize = 5;
-
-/// How long the parts of `tiles` tiles in a row are: a third, as nearly as may be, but not too few.
-fn part_of(tiles: usize) -> usize {
-    tiles.div_ceil(tiles.div_ceil(FEW_TILES).min(3))
+/// The length of the parts of `tiles` tiles in a row. There are at most three parts, and only as many as make
+/// each at most [`MAX_UNDIVIDED`] long.
+fn part_len(tiles: usize) -> usize {
+    tiles.div_ceil(tiles.div_ceil(MAX_UNDIVIDED).min(3))
 }

@@ -1,28 +1,48 @@
-//! The lights of one tile.
+//! The list of one depth interval of one tile.
 
 use fearless_simd::{Simd, SimdBase, SimdMask};
 
 use super::batch::Chunk;
 use super::filter::{in_depth, load_fields};
-use super::lanes::{LANES, Lanes, load, parts};
+use super::lanes::{LANES, Lanes, load, parts, store};
 use super::{LightBatch, LightLists};
 use crate::num::F32Lanes;
 use crate::touch::{BoxTest, TileBounds};
 
-/// What the lights of a chunk share with all tiles of a row.
+/// For the lights of a chunk, the intermediate results of the box test that all tiles of a row share.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Row<P: BoxTest>(pub P::Row<Lanes>);
 
 impl<P: BoxTest> Row<P> {
-    pub fn none() -> Self {
+    pub fn zero() -> Self {
         Self(P::row_of([0.0; LANES]))
     }
 }
 
-/// Appends the lights that may touch `tile` to `lists`; gives the number of tests.
+/// Computes `rows`, the intermediate results of `chunks` for the row of tiles with the slopes y/z = `down`.
 #[inline(always)]
-pub(super) fn list<S: Simd, P: BoxTest>(
+pub(super) fn fill_rows<S: Simd, P: BoxTest>(
+    simd: S,
+    chunks: &[Chunk<P>],
+    down: [f32; 2],
+    rows: &mut [Row<P>],
+) {
+    let down = [F32Lanes::new(simd, down[0]), F32Lanes::new(simd, down[1])];
+    for (chunk, row) in chunks.iter().zip(rows) {
+        for part in 0..parts::<S>() {
+            let fields = load_fields(simd, chunk, part);
+            let shared = P::row(&fields, down);
+            for (lanes, vector) in row.0.as_mut().iter_mut().zip(shared.as_ref()) {
+                store(lanes, part, *vector);
+            }
+        }
+    }
+}
+
+/// Appends the lights that may touch `tile` to `lists`. Returns the number of tests.
+#[inline(always)]
+pub(super) fn append_list<S: Simd, P: BoxTest>(
     simd: S,
     lights: &LightBatch<P>,
     rows: &[Row<P>],
@@ -30,36 +50,39 @@ pub(super) fn list<S: Simd, P: BoxTest>(
     lists: &mut LightLists,
 ) -> u64 {
     let room = lists.room_for((lights.chunks().len() + 1) * LANES);
-    let index = |_, chunk: &Chunk<P>, part| {
-        let of_chunk = &chunk.lights[part * S::u32s::LEN..][..S::u32s::LEN];
-        S::u32s::from_slice(simd, of_chunk)
+    let indices = |_, chunk: &Chunk<P>, part| {
+        let lights = &chunk.lights[part * S::u32s::LEN..][..S::u32s::LEN];
+        S::u32s::from_slice(simd, lights)
     };
-    let [count, tested] = find(simd, lights, rows, tile, index, room);
-    lists.take(count);
+    let [count, tested] = write_touching(simd, lights, rows, tile, indices, room);
+    lists.advance(count);
     tested as u64
 }
 
-/// Writes the `index` of each light that may touch `tile` to the front of `found`; gives how many these
-/// are, and the number of tests.
+/// Writes a number for each light that may touch `tile` to the front of `out`. Returns the number of these
+/// lights and the number of tests.
+///
+/// `values` gives the numbers for a vector of lights. Its arguments are the index of a chunk, the chunk, and
+/// the part of it.
 #[inline(always)]
-pub(super) fn find<S: Simd, P: BoxTest>(
+pub(super) fn write_touching<S: Simd, P: BoxTest>(
     simd: S,
     lights: &LightBatch<P>,
     rows: &[Row<P>],
     tile: &TileBounds<F32Lanes<S>>,
-    index: impl Fn(usize, &Chunk<P>, usize) -> S::u32s,
-    found: &mut [u32],
+    values: impl Fn(usize, &Chunk<P>, usize) -> S::u32s,
+    out: &mut [u32],
 ) -> [usize; 2] {
-    // Each write is of a whole vector, of which the next one keeps only what counts.
+    // Each write is of a whole vector. The next one overwrites the lanes that do not count.
     let (mut end, mut tested, mut first) = (0, 0, 0);
     let groups = lights.chunks().chunks(LANES).zip(rows.chunks(LANES));
     for ((chunks, rows), reach) in groups.zip(lights.reach()) {
         let mut candidates = in_depth(simd, reach, tile);
         tested += candidates.count_ones() as usize;
         while candidates != 0 {
-            let place = candidates.trailing_zeros() as usize;
+            let index = candidates.trailing_zeros() as usize;
             candidates &= candidates - 1;
-            let (chunk, row) = (&chunks[place], &rows[place].0);
+            let (chunk, row) = (&chunks[index], &rows[index].0);
             for part in 0..parts::<S>() {
                 let mut shared = P::row_of(F32Lanes::new(simd, 0.0));
                 for (vector, lanes) in shared.as_mut().iter_mut().zip(row.as_ref()) {
@@ -67,9 +90,9 @@ pub(super) fn find<S: Simd, P: BoxTest>(
                 }
                 let fields = load_fields(simd, chunk, part);
                 let touching = !P::misses(&fields, &shared, tile);
-                // Without asking first whether there are any: it would be guessed wrong too often.
-                let chosen = index(first + place, chunk, part).compress(touching);
-                chosen.store_slice(&mut found[end..end + S::u32s::LEN]);
+                // No branch on whether there are any, since it would often be mispredicted.
+                let chosen = values(first + index, chunk, part).compress(touching);
+                chosen.store_slice(&mut out[end..end + S::u32s::LEN]);
                 end += touching.to_bitmask().count_ones() as usize;
             }
         }

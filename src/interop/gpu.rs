@@ -1,11 +1,12 @@
-//! Lights as a shader reads them.
+//! Projected shapes in the memory layout of shaders.
 
 use bytemuck::{Pod, Zeroable};
 
 use crate::project::{ProjectedEllipsoid, ProjectedSphere};
 
-/// A [`ProjectedEllipsoid`] and the light that it is of, for a storage buffer: 48 bytes, with the offsets of this
-/// structure in WGSL and of its like in GLSL's std430.
+/// A [`ProjectedEllipsoid`] and the index of its light, for a storage buffer.
+///
+/// 48 bytes, with the offsets of this structure in WGSL, which are those of GLSL's std430:
 ///
 /// ```wgsl
 /// struct Ellipsoid {
@@ -17,12 +18,14 @@ use crate::project::{ProjectedEllipsoid, ProjectedSphere};
 /// }
 /// ```
 ///
-/// The elements of M that are not listed are zero. The record has all that the
-/// [tile test](crate::ProjectedEllipsoid::touches) takes: products, sums, minima and maxima. A shader that does
-/// these operations may still answer otherwise where a tile and a light just touch or just miss, since shading
-/// languages let compilers contract and reorder them, and flush subnormal numbers. The light was enlarged for
-/// one rounding of each operation, so contraction, which leaves some out, loses no light; nothing is promised
-/// of operations that are reordered or not correctly rounded.
+/// The elements of M that are not listed are zero. The record holds all that the
+/// [tile test](crate::ProjectedEllipsoid::touches) needs: products, sums, minima and maxima.
+///
+/// A shader that does the same operations may decide differently where a tile and a light just touch or just
+/// miss, since shading languages allow compilers to contract and reorder operations and to flush subnormal
+/// numbers. The ellipsoid was enlarged for one rounding of each operation. Contraction leaves out some of
+/// them and loses no light. There is no such guarantee for operations that are reordered or not correctly
+/// rounded.
 ///
 /// ```
 /// use stochastic_light_culling::{Camera, Ellipsoid, GpuEllipsoid, glam::{Mat3, Vec3}};
@@ -45,16 +48,16 @@ pub struct GpuEllipsoid {
     pub x_and_y_axes: [f32; 4],
     /// M₁₃, M₂₃, m: the image of the depth axis.
     pub z_axis: [f32; 3],
-    /// The light, as the engine numbers them.
+    /// The index of the light.
     pub light: u32,
     /// Mc′, the centre of the unit sphere.
     pub center: [f32; 3],
-    /// Zero, and free for other uses.
+    /// Zero. Free for other uses.
     pub unused: u32,
 }
 
 impl GpuEllipsoid {
-    /// The record of `ellipsoid`, which is of `light`.
+    /// Creates the record of `ellipsoid`, the bound of the light with index `light`.
     #[must_use]
     pub fn new(ellipsoid: &ProjectedEllipsoid, light: u32) -> Self {
         let m = ellipsoid.matrix();
@@ -68,8 +71,9 @@ impl GpuEllipsoid {
     }
 }
 
-/// A [`ProjectedSphere`] for a storage or uniform buffer: 16 bytes, a `vec4<f32>`. Which light it is of, its
-/// place in the buffer says.
+/// A [`ProjectedSphere`] for a storage or uniform buffer: 16 bytes, a `vec4<f32>`.
+///
+/// The index of its light is not part of it, and can be its position in the buffer.
 ///
 /// ```
 /// use stochastic_light_culling::{Camera, GpuSphere, Sphere, glam::Vec3};
@@ -87,7 +91,7 @@ impl GpuEllipsoid {
 pub struct GpuSphere {
     /// The centre in camera space; offset 0.
     pub center: [f32; 3],
-    /// The square of the radius, infinite of a sphere that is everywhere; offset 12.
+    /// The square of the radius, infinite for a sphere that fills space; offset 12.
     pub radius_squared: f32,
 }
 

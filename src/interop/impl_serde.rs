@@ -1,6 +1,6 @@
-//! What serde writes of each type, and the constructor that checks what it reads.
+//! Serialization of each type, and the constructor that checks what is deserialized.
 //!
-//! Plain types with public fields derive this where they are defined.
+//! Types whose fields are public derive both traits where they are defined.
 
 use glam::{Mat3, Vec3};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
@@ -11,9 +11,9 @@ use crate::lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, Dielectric, Fresnel, Ggx, GgxLobe, Incidence,
     LambertLobe, Lobe, PhongLobe, Schlick,
 };
-use crate::view::{Camera, DepthInterval, Interleave, Parts, TileGrid, TileRectangle};
+use crate::view::{Camera, CameraParts, DepthInterval, Interleave, TileGrid, TileRectangle};
 
-/// For each type the fields that are saved, and the constructor that they are read through.
+/// Implements both traits: for each type the fields that are saved, and the constructor that reads them.
 macro_rules! saved {
     ($(
         |$this:ident| $name:ident { $($field:ident: $kind:ty = $value:expr),* } => $constructed:expr;
@@ -41,7 +41,7 @@ macro_rules! saved {
     )*};
 }
 
-/// What a constructor refuses is an error with its words.
+/// Turns the error of a constructor into one of the deserializer, with the same message.
 fn checked<T, E: de::Error>(constructed: Result<T, Error>) -> Result<T, E> {
     constructed.map_err(E::custom)
 }
@@ -77,8 +77,8 @@ saved! {
         TileGrid::new(image_size, tile_size);
     |tile| TileRectangle { min: [f32; 2] = tile.min().into(), max: [f32; 2] = tile.max().into() } =>
         TileRectangle::new(min.into(), max.into());
-    // Not the arguments of a constructor, which a camera does not keep, but the numbers they come to. The
-    // rotation is the images of the world's axes.
+    // A camera does not keep the arguments of its constructor, so its fields are saved. The columns of the
+    // rotation are the images of the world's axes.
     |camera| Camera {
         rotation: [[f32; 3]; 3] = camera.parts().rotation.to_cols_array_2d(),
         translation: [f32; 3] = camera.parts().translation.into(),
@@ -86,7 +86,7 @@ saved! {
         slope_offset: [f32; 2] = camera.parts().slope_offset.into(),
         depth_numerator: f32 = camera.parts().depth_numerator,
         depth_offset: f32 = camera.parts().depth_offset
-    } => Camera::of_parts(Parts {
+    } => Camera::from_parts(CameraParts {
         rotation: Mat3::from_cols_array_2d(&rotation),
         translation: translation.into(),
         slope_scale: slope_scale.into(),
@@ -96,7 +96,7 @@ saved! {
     });
 }
 
-/// A number on its own.
+/// Saved as a single number.
 impl Serialize for Xi {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.get().serialize(serializer)
@@ -109,7 +109,7 @@ impl<'de> Deserialize<'de> for Xi {
     }
 }
 
-/// Three numbers, of any length when read.
+/// Saved as three numbers. A vector of any length is read.
 impl Serialize for Direction {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.to_array().serialize(serializer)
@@ -123,7 +123,7 @@ impl<'de> Deserialize<'de> for Direction {
     }
 }
 
-/// Of a lobe; the form of its masking and shadowing is that of the type which is read.
+/// The fields of a lobe. The form of masking and shadowing is not saved: it is that of the type that is read.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "GgxLobe")]
 struct SavedGgxLobe<F> {

@@ -1,4 +1,4 @@
-//! Saving and reading, and records for GPUs.
+//! Serialization, and records for a GPU.
 
 #[cfg(feature = "bytemuck")]
 mod gpu;

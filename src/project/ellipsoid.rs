@@ -1,41 +1,40 @@
-//! From an ellipsoid in the world to the unit sphere before the eye.
+//! The projection of an ellipsoid to a unit sphere.
 //!
-//! An ellipsoid meets a tile exactly when its image, a unit sphere, meets the image of the tile.
-//! With the axes R′ = V R and the centre c′ = V c + o in camera space,
+//! A linear map M takes the ellipsoid, in camera space, to a unit sphere. The ellipsoid meets a tile exactly
+//! if the unit sphere meets the image of the tile under M. With the axes R′ = V R and the centre
+//! c′ = V c + o in camera space, the stretch
 //!
 //! S = R′ diag(1/r_u, 1/r_v, 1/r_w) R′ᵀ
 //!
-//! takes it to a unit sphere, and the rotation B after it turns planes of constant depth back to
-//! planes of constant depth: M = BS has the third row (0, 0, m)
-//! [Tokuyoshi & Harada 2017, Eqs. 16–17].
+//! takes the ellipsoid to a unit sphere. The rotation B then takes the images of planes of constant depth
+//! to planes of constant z: M = BS has the third row (0, 0, m) [Tokuyoshi & Harada 2017, Eqs. 16–17].
 //!
 //! # M without S and B
 //!
-//! B is orthonormal, so MᵀM = S² = A, and B puts a zero at M₂₁ or at M₁₂: M is triangular, the
-//! Cholesky factor of A. Reckoned as B times S, its rows are differences of entries as large as
-//! 1/r_w that must leave 1/r_u, and errors grow with the square of the aspect ratio. But let C = A⁻¹
-//! = R′ diag(r_u², r_v², r_w²) R′ᵀ. From M C Mᵀ = 1 follow
+//! B is orthonormal, so MᵀM = S² = A, and B puts a zero at M₂₁ or at M₁₂. So M is a triangular factor of A,
+//! as in a Cholesky decomposition. The product B S would lose accuracy: its rows are differences of elements
+//! as large as 1/r_w whose result can be as small as 1/r_u, so errors grow with the square of the aspect
+//! ratio. Instead let C = A⁻¹ = R′ diag(r_u², r_v², r_w²) R′ᵀ. From M C Mᵀ = 1 follow
 //!
 //! - m = 1/√C_zz: the ellipsoid reaches √C_zz in depth;
 //! - A_xx A_yy − A_xy² = C_zz det A, the cofactor rule;
 //! - (M₁₃, M₂₃) = −M₂ₓ₂ (C_xz, C_yz)/C_zz.
 //!
-//! Sums of squares all but A_xy, C_xz and C_yz, whose rounding Cauchy–Schwarz bounds by that of the
-//! diagonal: no error is worse than the aspect ratio times a few roundings, which is what one ulp of
-//! the axes costs in any case.
+//! All elements but A_xy, C_xz and C_yz are sums of squares. By Cauchy–Schwarz the errors of these three are
+//! bounded by those of the diagonal. So no error exceeds the aspect ratio times a few roundings, which is
+//! the effect of one ulp of the axes in any case.
 //!
-//! # What rounding costs
+//! # Rounding
 //!
-//! With u = 2⁻²⁴, s the secant of the corner of the view, and δ the deviation of V and R from
-//! orthonormal, the image of a point p of the ellipsoid and the box of a tile that holds it are
-//! computed apart from each other by at most
+//! Let u = 2⁻²⁴, s the secant of the corner of the view, and δ the deviation of V from orthonormal. Rounding
+//! moves the image of a point p of the ellipsoid against the box of a tile that holds p by at most
 //!
-//! - (r_max/r_min)(128u + 6δ) for the axes and the elements of M,
-//! - 6u ‖c′‖/r_min for c′ and M c′,
-//! - 9u s z/r_min for the box, z ≤ max(c′_z, 0) + r_max the greatest depth of p.
+//! - (r_max/r_min)(128u + 6δ) for the axes and the elements of M ([`AXES_ROUNDINGS`], [`AXES_DEVIATIONS`]),
+//! - 6u ‖c′‖/r_min for c′ and M c′ ([`CENTER_ROUNDINGS`]),
+//! - 9u s z/r_min for the box ([`BOX_ROUNDINGS`]), where z ≤ max(c′_z, 0) + r_max is the greatest depth of p.
 //!
-//! The semi-axes are enlarged by the sum, so that such a tile is never found apart from the light.
-//! `docs/rounding.md` counts the roundings, and those of a sphere, which is not stretched and has fewer.
+//! The semi-axes are enlarged by r_min times the sum, so the test never misses such a tile.
+//! `docs/rounding.md` counts the roundings.
 
 use glam::{Mat3, Vec3};
 
@@ -45,11 +44,27 @@ use crate::bound::{Ellipsoid, Ellipsoids};
 use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3};
 use crate::view::Camera;
 
-/// S, the symmetric matrix that stretches camera space so that `ellipsoid` becomes a unit sphere
+/// Budget for c′ and M c′, in units of the sum of the coordinates of c′.
+const CENTER_ROUNDINGS: f32 = 6.0;
+/// Budget for the box of a tile, in units of s z.
+const BOX_ROUNDINGS: f32 = 9.0;
+/// Budget for the axes and the elements of M, in units of the longest semi-axis.
+const AXES_ROUNDINGS: f32 = 128.0;
+/// Budget for the axes of a view that is not orthonormal, in units of its deviation δ and the longest
+/// semi-axis.
+const AXES_DEVIATIONS: f32 = 6.0;
+/// Budget for the enlarged shortest semi-axis, the row of m and the comparison of the box test.
+const SEMI_AXIS_ROUNDINGS: u16 = 4;
+/// Budget for the product and the difference of the box test in m z, in units of the unit sphere.
+const REACH_ROUNDINGS: f32 = 4.0;
+/// Lower clamp of the enlarged shortest semi-axis. Its reciprocal times a slope and a depth is finite.
+const LEAST_SEMI_AXIS: f32 = 1e-30;
+
+/// S, the symmetric matrix that stretches camera space such that `ellipsoid` becomes a unit sphere
 /// [Tokuyoshi & Harada 2017, Eq. 16].
 ///
-/// For a look at the method and for single uses; [`ProjectedEllipsoid`] does not need it. Not finite for an
-/// empty ellipsoid.
+/// Shows the method of the paper; [`ProjectedEllipsoid`] does not use it. Neither enlarged for rounding nor
+/// accurate for high aspect ratios. Not finite for an empty ellipsoid.
 ///
 /// ```
 /// use stochastic_light_culling::{
@@ -70,13 +85,13 @@ pub fn stretch_matrix(ellipsoid: &Ellipsoid, camera: &Camera) -> Mat3 {
     axes * Mat3::from_diagonal(ellipsoid.semi_axes().recip()) * axes.transpose()
 }
 
-/// B, the rotation that takes the images under `stretch` = S of planes of constant depth to planes of
+/// B, the rotation that takes the images of planes of constant depth under `stretch` = S to planes of
 /// constant z [Tokuyoshi & Harada 2017, Eq. 17].
 ///
-/// Not finite if S is singular or not finite itself.
+/// Not finite if S is singular or not finite.
 #[must_use]
 pub fn stretch_rotation(stretch: Mat3) -> Mat3 {
-    // Not `normalize`, which panics at zero where glam is built with its assertions.
+    // `normalize` panics at zero if glam is built with its assertions.
     let unit = |v: Vec3| v * v.length().recip();
     let (x, y) = (stretch.x_axis, stretch.y_axis);
     let z = unit(x.cross(y));
@@ -89,8 +104,11 @@ pub fn stretch_rotation(stretch: Mat3) -> Mat3 {
     }
 }
 
-/// An ellipsoid as a tile test wants it: M = BS, which takes it to a unit sphere, and the sphere's
-/// centre Mc′.
+/// An ellipsoid projected to camera space, as tile tests take it: the matrix M = BS, which takes the
+/// ellipsoid to a unit sphere, and the centre Mc′ of that sphere.
+///
+/// The ellipsoid is enlarged for rounding. One that is too large for `f32` has M = 0 and
+/// Mc′ = 0, and touches every tile.
 ///
 /// ```
 /// use stochastic_light_culling::{Camera, Ellipsoid, glam::{Mat3, Vec3}};
@@ -108,8 +126,8 @@ pub struct ProjectedEllipsoid {
 }
 
 impl ProjectedEllipsoid {
-    /// M: the columns are the images of the axes of camera space. Its third row is (0, 0, m), and one
-    /// of its other two elements off the diagonal of the first two columns is zero.
+    /// M. Its columns are the images of the axes of camera space. Its third row is (0, 0, m), and M₁₂ or
+    /// M₂₁ is zero.
     #[must_use]
     pub fn matrix(&self) -> Mat3 {
         self.matrix
@@ -123,9 +141,9 @@ impl ProjectedEllipsoid {
 }
 
 impl Ellipsoid {
-    /// The ellipsoid in the space of `camera`, as a unit sphere; `None` if it is empty.
+    /// Projects the ellipsoid to a unit sphere in the space of `camera`. `None` if the ellipsoid is empty.
     ///
-    /// Of an ellipsoid too large to be finite, the stretch takes all of space into the unit sphere.
+    /// For an ellipsoid too large to be finite, M is zero and takes all of space into the unit sphere.
     #[must_use]
     pub fn project(&self, camera: &Camera) -> Option<ProjectedEllipsoid> {
         if self.is_empty() {
@@ -151,12 +169,8 @@ impl Project for Ellipsoid {
     }
 }
 
-/// Roundings of the centre and of the box of a tile.
-const ROUNDINGS: [f32; 2] = [6.0, 9.0];
-/// M is made of its reciprocal, which is not to overflow times a slope and a depth.
-const LEAST_SEMI_AXIS: f32 = 1e-30;
-
 impl<N: Single> Ellipsoids<N> {
+    /// [`Project::project_lanes`] of ellipsoids.
     #[inline(always)]
     pub(super) fn projected(self, camera: &Camera) -> ProjectedLanes<N, ProjectedEllipsoid> {
         let fields = self.fields(camera);
@@ -166,7 +180,7 @@ impl<N: Single> Ellipsoids<N> {
         }
     }
 
-    /// The fields of projected ellipsoids, none of which is empty.
+    /// The fields of the projected ellipsoids, none of which is empty.
     #[inline(always)]
     fn fields(self, camera: &Camera) -> [N; 10] {
         let semi_axes = self.semi_axes;
@@ -180,10 +194,11 @@ impl<N: Single> Ellipsoids<N> {
 
         let axes = camera.rotation_in_lanes(shortest) * self.axes;
         let [xx, xy, xz, yx, yy, yz, m] = triangular_stretch(axes, semi_axes);
-        let rounding =
-            margin(camera, center, longest, ROUNDINGS) + camera.rounding_of_terms(self.parts);
-        let tilt = longest * (128.0 * UNIT_ROUNDOFF + 6.0 * camera.rotation_deviation());
-        let enlarged = (shortest + (rounding + tilt)).round_up(4);
+        let rounding = margin(camera, center, longest, CENTER_ROUNDINGS, BOX_ROUNDINGS)
+            + camera.rounding_of_terms(self.parts);
+        let tilt = longest
+            * (AXES_ROUNDINGS * UNIT_ROUNDOFF + AXES_DEVIATIONS * camera.rotation_deviation());
+        let enlarged = (shortest + (rounding + tilt)).round_up(SEMI_AXIS_ROUNDINGS);
         let factor = enlarged.max(zero.splat(LEAST_SEMI_AXIS)).recip();
 
         let x = Vector3::new(xx, xy, xz) * factor;
@@ -195,14 +210,14 @@ impl<N: Single> Ellipsoids<N> {
     }
 }
 
-/// The elements of M·r_min that are not zero, row by row, for axes that are the columns of `axes`.
+/// The elements of M·r_min, row by row without the two zeros of the last row, for the columns R′ = `axes`.
 #[inline(always)]
 fn triangular_stretch<N: Real>(axes: Matrix3<N>, semi_axes: Vector3<N>) -> [N; 7] {
     let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
     let Vector3 { x, y, z } = semi_axes;
     let inverse = Vector3::new(shortest / x, shortest / y, shortest / z);
     let direct = Vector3::new(x / longest, y / longest, z / longest);
-    // A r_min² and C/r_max², of which only these elements are needed.
+    // The elements of A r_min² and C/r_max² that are needed.
     let Matrix3 { x, y, z } = axes.transpose();
     let (inverse_squared, direct_squared) = (inverse.times(inverse), direct.times(direct));
     let a_xx = inverse_squared.times(x).dot(x);
@@ -213,9 +228,9 @@ fn triangular_stretch<N: Real>(axes: Matrix3<N>, semi_axes: Vector3<N>) -> [N; 7
     let c_zz = direct_squared.times(z).dot(z);
 
     let depth_reach = c_zz.sqrt();
-    // √(A_xx A_yy − A_xy²): of √det A, the factor 1/(r_min r_max) is in the units chosen.
+    // √(A_xx A_yy − A_xy²). The factor 1/(r_min r_max) of √det A is part of the scales of A and C.
     let root = depth_reach * (shortest / semi_axes.median());
-    // The longer image first, in the same operations whichever it is.
+    // The longer of the images of the x and y axes comes first. Both cases take the same operations.
     let zero = root.zero();
     let x_first = a_xx.gt(a_yy);
     let first = N::select(x_first, a_xx, a_yy).sqrt();
@@ -235,7 +250,7 @@ impl Projected for ProjectedEllipsoid {
     /// M₁₁, M₁₂, M₁₃, M₂₁, M₂₂, M₂₃, m, and Mc′.
     type Fields<T: Field> = [T; 10];
 
-    /// At an infinite distance.
+    /// The centre is at infinity.
     const NOWHERE: [f32; 10] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f32::INFINITY, 0.0, 0.0];
 
     fn fields_of<T: Field>(value: T) -> [T; 10] {
@@ -269,6 +284,6 @@ impl Projected for ProjectedEllipsoid {
     }
 }
 
-/// The unit sphere's reach in m z, enlarged by what the test rounds there: m z, and its difference from the
-/// centre. [`outward`] covers the part of it that grows with the depth.
-const UNIT_REACH: f32 = 1.0 + 4.0 * UNIT_ROUNDOFF;
+/// The reach of the unit sphere in m z, enlarged for rounding. [`outward`] pays for the part of the rounding
+/// that grows with the depth.
+const UNIT_REACH: f32 = 1.0 + REACH_ROUNDINGS * UNIT_ROUNDOFF;

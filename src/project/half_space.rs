@@ -4,45 +4,53 @@ use crate::bound::HalfSpace;
 use crate::num::{UNIT_ROUNDOFF, Vector3};
 use crate::view::Camera;
 
-/// A [`HalfSpace`] in camera space, as a tile test takes it: n·x > n·q.
+/// Budget for n·q, in units of ‖q‖.
+const OFFSET_ROUNDINGS: f32 = 6.0;
+/// Budget for n·x at a corner x of a tile at depth 1, in units of the secant of the corner of the view.
+const CORNER_ROUNDINGS: f32 = 8.0;
+/// Budget for the angle by which a view that is not orthonormal turns n, in units of its deviation δ.
+const NORMAL_DEVIATIONS: f32 = 3.0;
+/// Factor of all that is subtracted from n·q. Pays for the difference, and for a measured δ that is short.
+const OFFSET_GROWTH: f32 = 1.5;
+
+/// A [`HalfSpace`] projected to camera space: n·x > n·q.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProjectedHalfSpace {
     normal: Vec3,
-    /// n·q, less what rounding can have added to it.
+    /// n·q, rounded down.
     offset: f32,
-    /// What rounding can have taken from n·x at depth 1.
+    /// Upper bound of the error of n·x for a point x of a tile at depth 1.
     rounding_at_one: f32,
 }
 
 impl HalfSpace {
-    /// The half-space in the space of `camera`.
+    /// Projects the half-space to the space of `camera`.
     ///
-    /// Enlarged by what rounding can take: n and q in camera space are rounded once and n·q five
-    /// times, 6u‖q‖; a tile's corner, at depth 1 no longer than the secant s of the corner of the
-    /// view, is off by 8us; and a view that is orthonormal to δ turns n by 3δ.
+    /// It is enlarged for rounding, so that [`ProjectedHalfSpace::touches`] never misses a tile that holds a
+    /// point of it.
     #[must_use]
     pub fn project(&self, camera: &Camera) -> ProjectedHalfSpace {
-        let normal = camera.turn(*self.normal());
+        let normal = camera.direction_to_camera_space(*self.normal());
         let point = camera.to_camera_space(self.position());
-        let turned = 3.0 * camera.rotation_deviation();
-        let of_offset = (6.0 * UNIT_ROUNDOFF + turned) * point.length()
+        let turn = NORMAL_DEVIATIONS * camera.rotation_deviation();
+        let rounding = (OFFSET_ROUNDINGS * UNIT_ROUNDOFF + turn) * point.length()
             + camera.rounding_of_terms([self.position(), Vec3::ZERO].map(Vector3::from));
         ProjectedHalfSpace {
             normal,
-            offset: normal.dot(point) - 1.5 * of_offset,
-            rounding_at_one: (8.0 * UNIT_ROUNDOFF + turned) * camera.corner_secant(),
+            offset: normal.dot(point) - OFFSET_GROWTH * rounding,
+            rounding_at_one: (CORNER_ROUNDINGS * UNIT_ROUNDOFF + turn) * camera.corner_secant(),
         }
     }
 }
 
 impl ProjectedHalfSpace {
-    /// n in camera space.
+    /// n, the unit normal in camera space, to within rounding.
     #[must_use]
     pub fn normal(&self) -> Vec3 {
         self.normal
     }
 
-    /// n·q in camera space, rounded down.
+    /// n·q in camera space, rounded down. −∞ or NaN if it overflows; such a half-space touches every tile.
     #[must_use]
     pub fn offset(&self) -> f32 {
         self.offset

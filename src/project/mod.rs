@@ -1,4 +1,6 @@
-//! Shapes in the space of a camera, as tile tests take them.
+//! Shapes projected to camera space, in the form that tile tests take.
+//!
+//! `docs/rounding.md` counts the roundings that each budget here pays for.
 
 mod ellipsoid;
 mod half_space;
@@ -18,16 +20,17 @@ use crate::bound::{Bounded, Shape};
 use crate::num::{Single, UNIT_ROUNDOFF, Vector3};
 use crate::view::Camera;
 
-/// A shape that a tile can be tested against once it is in camera space. For generic code: each shape has
-/// `project` itself.
+/// A shape that can be projected to camera space and tested against tiles.
+///
+/// For generic code. Each shape also has `project` as an inherent function.
 pub trait Project: Shape {
-    /// The shape in camera space.
+    /// The projected shape.
     type Projected: Projected;
 
-    /// The shape in the space of `camera`; `None` if it is empty.
+    /// Projects the shape to the space of `camera`. `None` if the shape is empty.
     fn project(&self, camera: &Camera) -> Option<Self::Projected>;
 
-    /// [`project`](Self::project) in each lane, of shapes that are not empty.
+    /// [`project`](Self::project) in each lane, for shapes that are not empty.
     #[doc(hidden)]
     fn project_lanes<N: Single>(
         lanes: Self::Lanes<N>,
@@ -35,21 +38,24 @@ pub trait Project: Shape {
     ) -> projected::ProjectedLanes<N, Self::Projected>;
 }
 
-/// The projected shape of the recommended bound of lobes of type `L`: what batches of such lights hold.
+/// The projected shape of the recommended bound of lobes of type `L`, as batches of such lights hold it.
 pub type ProjectedBound<L> = <<L as Bounded>::Shape as Project>::Projected;
 
-/// The length by which rounding can move a point within `reach` of `center`, in camera space, against
-/// the box of a tile that holds it, if that takes so many roundings of the centre and of the box.
+/// Upper bound of the length by which rounding moves a point within `radius` of `center`, in camera space,
+/// against the box of a tile that holds the point.
+///
+/// `center_roundings` is the number of roundings of the centre, and `box_roundings` that of the box.
 #[inline(always)]
 fn margin<N: Single>(
     camera: &Camera,
     center: Vector3<N>,
-    reach: N,
-    [of_center, of_box]: [f32; 2],
+    radius: N,
+    center_roundings: f32,
+    box_roundings: f32,
 ) -> N {
-    let farthest_depth = center.z.max(reach.zero()) + reach;
-    // In place of its length, which is no larger and a root more.
-    let of_center = center.abs().element_sum() * of_center;
-    let of_box = farthest_depth * (of_box * camera.corner_secant());
+    let farthest_depth = center.z.max(radius.zero()) + radius;
+    // The sum of the coordinates is no less than the length, and needs no root.
+    let of_center = center.abs().element_sum() * center_roundings;
+    let of_box = farthest_depth * (box_roundings * camera.corner_secant());
     (of_center + of_box) * UNIT_ROUNDOFF
 }

@@ -6,7 +6,20 @@ use crate::bound::{Sphere, Spheres};
 use crate::num::Single;
 use crate::view::Camera;
 
-/// A sphere as a tile test wants it: in camera space, with nothing stretched.
+/// Budget for the centre, in units of the sum of its coordinates.
+const CENTER_ROUNDINGS: f32 = 9.0;
+/// Budget for the box of a tile, in units of s z: s is the secant of the corner of the view, z the depth.
+const BOX_ROUNDINGS: f32 = 2.0;
+/// Budget for the stretch of the radius by a view that is not orthonormal, in units of its deviation δ.
+const RADIUS_DEVIATIONS: f32 = 3.0;
+/// Budget for the radius: its own sums, those of the box test, and a measured δ that is short.
+const RADIUS_ROUNDINGS: u16 = 10;
+/// Budget for the radius in the range of depths that a sphere reaches.
+const REACH_ROUNDINGS: u16 = 4;
+/// Lower clamp of the radius. Its square, and the squares of distances as long, are normal numbers.
+const LEAST_RADIUS: f32 = 1e-18;
+
+/// A sphere projected to camera space, as tile tests take it. Nothing is stretched.
 ///
 /// ```
 /// use stochastic_light_culling::{Camera, Sphere, glam::Vec3};
@@ -25,13 +38,14 @@ pub struct ProjectedSphere {
 }
 
 impl ProjectedSphere {
-    /// The centre in camera space.
+    /// The centre in camera space. Zero for a sphere too large to be finite.
     #[must_use]
     pub fn center(&self) -> Vec3 {
         self.center
     }
 
-    /// The square of the radius, enlarged by what rounding can take.
+    /// The square of the radius, enlarged for rounding. Infinite for a sphere too large to be finite, which
+    /// touches every tile.
     #[must_use]
     pub fn radius_squared(&self) -> f32 {
         self.radius_squared
@@ -39,7 +53,7 @@ impl ProjectedSphere {
 }
 
 impl Sphere {
-    /// The sphere in the space of `camera`; `None` if it is empty.
+    /// Projects the sphere to the space of `camera`. `None` if the sphere is empty.
     #[inline]
     #[must_use]
     pub fn project(&self, camera: &Camera) -> Option<ProjectedSphere> {
@@ -71,20 +85,16 @@ impl Project for Sphere {
     }
 }
 
-/// Roundings of the centre and of the box of a tile.
-const ROUNDINGS: [f32; 2] = [9.0, 2.0];
-/// Its square, and those of distances as long, are far above the subnormal numbers.
-const LEAST_RADIUS: f32 = 1e-18;
-
 impl<N: Single> Spheres<N> {
-    /// The fields of projected spheres, none of which is empty, and their radii.
+    /// The fields of the projected spheres, none of which is empty, and their radii.
     #[inline(always)]
     fn fields_and_radius(self, camera: &Camera) -> ([N; 4], N) {
         let center = camera.relative_to_anchor(self.center);
-        let rounding = margin(camera, center, self.radius, ROUNDINGS) + camera.rounding_of_anchor();
-        let scaling = self.radius * (3.0 * camera.rotation_deviation());
-        let enlarged = (self.radius + rounding + scaling).round_up(10);
-        // Where the centre is not finite, nor is the radius by now.
+        let rounding = margin(camera, center, self.radius, CENTER_ROUNDINGS, BOX_ROUNDINGS)
+            + camera.rounding_of_anchor();
+        let stretch = self.radius * (RADIUS_DEVIATIONS * camera.rotation_deviation());
+        let enlarged = (self.radius + rounding + stretch).round_up(RADIUS_ROUNDINGS);
+        // If the centre is not finite, the margin is not either.
         let is_finite = (enlarged * enlarged).is_finite();
         let (zero, infinite) = (enlarged.zero(), enlarged.splat(f32::INFINITY));
         if N::is_known_false(is_finite) {
@@ -100,18 +110,18 @@ impl<N: Single> Spheres<N> {
     }
 }
 
-/// The depths that spheres reach.
+/// The range of depths that spheres reach.
 #[inline(always)]
 fn reach_of<N: Single>(depth: N, radius: N) -> [N; 2] {
-    let radius = radius.round_up(4);
+    let radius = radius.round_up(REACH_ROUNDINGS);
     outward([depth - radius, depth + radius])
 }
 
 impl Projected for ProjectedSphere {
-    /// The centre, and the square of the radius.
+    /// The centre and the square of the radius.
     type Fields<T: Field> = [T; 4];
 
-    // However large the tile, no distance is less than this.
+    /// The squared radius is less than any squared distance.
     const NOWHERE: [f32; 4] = [0.0, 0.0, 0.0, -1.0];
 
     fn fields_of<T: Field>(value: T) -> [T; 4] {

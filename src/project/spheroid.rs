@@ -5,7 +5,7 @@ use crate::num::Single;
 use crate::view::Camera;
 
 impl Spheroid {
-    /// The spheroid in the space of `camera`, as a unit sphere; `None` if it is empty.
+    /// Projects the spheroid to a unit sphere in the space of `camera`. `None` if the spheroid is empty.
     #[must_use]
     pub fn project(&self, camera: &Camera) -> Option<ProjectedEllipsoid> {
         Ellipsoid::from(*self).project(camera)

@@ -1,11 +1,11 @@
-//! The box test: a unit sphere against the box around the image of a tile.
+//! The box test: a unit sphere against the bounding box of the image of a tile.
 //!
-//! M takes the tile's rectangle, at depth 1, to a parallelogram; the box of that, drawn out over the depths,
-//! is an axis-aligned box, which is apart from the unit sphere if its nearest point is
-//! [Tokuyoshi & Harada 2017, Sec. 5.2].
+//! M takes the tile's rectangle, at depth 1, to a parallelogram. The bounding rectangle of that, scaled by
+//! all depths of the tile, has an axis-aligned bounding box. The test rejects a tile if the point of the box
+//! that is nearest to the centre lies outside the unit sphere [Tokuyoshi & Harada 2017, Sec. 5.2].
 //!
-//! Each operation is monotone, and rounding is too: of two tiles, one inside the other, the larger is touched
-//! by whatever touches the smaller, bit for bit. That is what lets blocks of tiles be tested first.
+//! Each operation is monotone, and so is rounding. So if a tile lies inside a larger one, whatever touches
+//! the tile also touches the larger one, bit for bit. Blocks of tiles are tested first for this reason.
 
 use super::TileTest;
 use super::frustum::Image;
@@ -13,11 +13,14 @@ use crate::num::{Double, Real, Single};
 use crate::project::{Field, Projected, ProjectedEllipsoid, ProjectedSphere};
 use crate::view::{DepthInterval, TileRectangle};
 
-/// The slopes across and down that a tile covers, and its depths, each from the least to the greatest.
+/// The bounds of a tile, each as \[least, greatest\].
 #[derive(Clone, Copy, Debug)]
 pub struct TileBounds<N> {
+    /// Slopes x/z.
     pub across: [N; 2],
+    /// Slopes y/z.
     pub down: [N; 2],
+    /// Depths z.
     pub depths: [N; 2],
 }
 
@@ -45,21 +48,21 @@ impl<N: Single> TileBounds<N> {
     }
 }
 
-/// A projected shape that batches hold and a `Culler` tests:
-/// [`ProjectedEllipsoid`] and [`ProjectedSphere`].
+/// A projected shape that a `Culler` can test: [`ProjectedEllipsoid`] or [`ProjectedSphere`].
 pub trait BoxTest: Projected + TileTest {
-    /// What a shape has in common with all tiles of a row: a part of its box.
+    /// Intermediate results that are the same for all tiles of a row of the grid.
     #[doc(hidden)]
     type Row<T: Field>: Field + AsRef<[T]> + AsMut<[T]>;
 
+    /// `value` in each component of a row.
     #[doc(hidden)]
     fn row_of<T: Field>(value: T) -> Self::Row<T>;
 
-    /// The row of tiles with these slopes down.
+    /// Computes the intermediate results for the row of tiles with the slopes y/z = `down`.
     #[doc(hidden)]
     fn row<N: Single>(fields: &Self::Fields<N>, down: [N; 2]) -> Self::Row<N>;
 
-    /// Whether the shape does not touch the box around `tile`. An overflow to NaN does not lose it.
+    /// Whether the shape misses the bounding box of `tile`. False if an overflow makes NaN.
     #[doc(hidden)]
     fn misses<N: Single>(
         fields: &Self::Fields<N>,
@@ -67,13 +70,13 @@ pub trait BoxTest: Projected + TileTest {
         tile: &TileBounds<N>,
     ) -> N::Mask;
 
-    /// The shape as the exact test takes it.
+    /// The shape in the form that the exact test takes.
     #[doc(hidden)]
     fn image<D: Double>(fields: &Self::Fields<D>) -> Image<D>;
 }
 
 impl BoxTest for ProjectedEllipsoid {
-    /// M₁₂y + M₁₃ and M₂₂y + M₂₃, from the least to the greatest.
+    /// M₁₂y + M₁₃ and M₂₂y + M₂₃, each as \[least, greatest\].
     type Row<T: Field> = [T; 4];
 
     fn row_of<T: Field>(value: T) -> [T; 4] {
@@ -92,9 +95,9 @@ impl BoxTest for ProjectedEllipsoid {
         let [m_11, _, _, m_21, _, _, m, x, y, z] = *fields;
         let across = shifted(scaled(m_11, tile.across), [row[0], row[1]]);
         let down = shifted(scaled(m_21, tile.across), [row[2], row[3]]);
-        let x = apart_at_depths(x, across, tile.depths);
-        let y = apart_at_depths(y, down, tile.depths);
-        let z = apart(z, [m * tile.depths[0], m * tile.depths[1]]);
+        let x = distance_at_depths(x, across, tile.depths);
+        let y = distance_at_depths(y, down, tile.depths);
+        let z = distance(z, [m * tile.depths[0], m * tile.depths[1]]);
         (x * x + y * y + z * z).gt(m.splat(1.0))
     }
 
@@ -128,9 +131,9 @@ impl BoxTest for ProjectedSphere {
     #[inline(always)]
     fn misses<N: Single>(fields: &[N; 4], _: &[N; 0], tile: &TileBounds<N>) -> N::Mask {
         let [x, y, z, radius_squared] = *fields;
-        let x = apart_at_depths(x, tile.across, tile.depths);
-        let y = apart_at_depths(y, tile.down, tile.depths);
-        let z = apart(z, tile.depths);
+        let x = distance_at_depths(x, tile.across, tile.depths);
+        let y = distance_at_depths(y, tile.down, tile.depths);
+        let z = distance(z, tile.depths);
         (x * x + y * y + z * z).gt(radius_squared)
     }
 
@@ -141,28 +144,29 @@ impl BoxTest for ProjectedSphere {
     }
 }
 
-/// The range of `factor` times a number in `range`.
+/// The range of the products of `factor` and a number in `range`.
 #[inline(always)]
 fn scaled<N: Real>(factor: N, range: [N; 2]) -> [N; 2] {
     let (a, b) = (factor * range[0], factor * range[1]);
     [a.min(b), a.max(b)]
 }
 
+/// The range of the sums of a number in `range` and one in `by`.
 #[inline(always)]
 fn shifted<N: Real>(range: [N; 2], by: [N; 2]) -> [N; 2] {
     [range[0] + by[0], range[1] + by[1]]
 }
 
-/// The distance of `center` from `range` times a number in `depths`.
+/// The signed distance of `center` from the range of the products of a number in `range` and one in `depths`.
 #[inline(always)]
-fn apart_at_depths<N: Real>(center: N, range: [N; 2], depths: [N; 2]) -> N {
+fn distance_at_depths<N: Real>(center: N, range: [N; 2], depths: [N; 2]) -> N {
     let [low, _] = scaled(range[0], depths);
     let [_, high] = scaled(range[1], depths);
-    apart(center, [low, high])
+    distance(center, [low, high])
 }
 
-/// The distance of `center` from `range`.
+/// The signed distance of `center` from `range`. Zero inside.
 #[inline(always)]
-fn apart<N: Real>(center: N, range: [N; 2]) -> N {
+fn distance<N: Real>(center: N, range: [N; 2]) -> N {
     center - center.max(range[0]).min(range[1])
 }

@@ -1,58 +1,65 @@
 //! The exact test: a ball against the image of a tile.
 //!
-//! M takes the points z(x, y, 1) of a tile to z(x a + y b + d), a, b and d its columns: a frustum whose
-//! apex is the eye and whose sections at each depth z are parallelograms. Let c be the centre of the
-//! ball.
+//! M takes the points z(x, y, 1) of a tile to z(x a + y b + d), where a, b and d are the columns of M. The
+//! image of the tile is a frustum. Its apex is the image of the eye, and its section at each depth z is a
+//! parallelogram. Let c be the centre of the ball.
 //!
-//! # Nearest in a section
+//! # Nearest point of a section
 //!
-//! The foot of c on the plane at depth z has the coordinates u* and v* along a and b, both linear in z.
-//! The nearest point of the parallelogram is that of two intervals of u and v, which is where one
-//! coordinate is clamped, then the other given the first, then the first again
+//! The projection of c to the plane at depth z has the coordinates u* and v* along a and b, both linear in z.
+//! The parallelogram is given by an interval of u and one of v. Its point nearest to c is found by clamping
+//! one coordinate, then the other for this value of the first, then the first again
 //! [Ericson 2005, Sec. 5.1.9].
 //!
-//! # Nearest of all sections
+//! # Nearest point of all sections
 //!
-//! The squared distance g(z) is convex and consists of parabolas, one for each side or corner of the
-//! parallelogram that may be nearest. With R the way from c to the nearest point z w, half the slope is
-//! s = R·w, and half the curvature is ‖w‖² less the part along the side that the point may slide on.
-//! Newton's step is exact as soon as it stays in its parabola: nine of ten lights are decided at the
-//! depth of c, and almost all others one step on.
+//! The squared distance g(z) is convex and piecewise quadratic, with a piece for each side or corner of the
+//! parallelogram that can be nearest. Let R be the vector from c to the nearest point z w. Half the slope of
+//! g is s = R·w. Half the curvature is ‖w‖² less the part along the side on which the point can slide.
+//! Newton's method is exact once a step stays within a piece: nine of ten lights are decided at the depth of
+//! c, and almost all others one step later.
 //!
-//! # What decides
+//! # Decision
 //!
-//! The search only proposes. A point of the tile in the ball accepts; what rejects is a plane at right
-//! angles to R, if all of the tile lies farther from c than the radius on its other side. With the
-//! middles and half lengths of the intervals, half a dozen products say how far: the least of R·x over
-//! the frustum is s z at one of both depths, s = R·(x a + y b + d) − |R·a| Δx − |R·b| Δy with x and y
-//! in the middle. Any R will do, so no rounding of the search counts, and that of the plane, in `f64`,
-//! is 10⁻⁷ of what the box test's in `f32` has been paid for: see `docs/rounding.md`.
+//! The search only proposes R. A light is accepted if a point of the tile lies in the ball. It is rejected
+//! if a plane normal to R separates the tile from the ball, that is, if R·x − R·c > ‖R‖ r for all x of the
+//! frustum. The least R·x is s z at the near or the far depth, with
+//! s = R·(x a + y b + d) − |R·a| Δx − |R·b| Δy, where x and y are the middles of the intervals and Δx and Δy
+//! their half lengths. Any R is valid, so the rounding of the search does not count. The rounding of the
+//! plane, in `f64`, is 10⁻⁷ of the budget for the box test in `f32`: see `docs/rounding.md`.
 //!
-//! So far it is one function over a [`Double`], with which a culler takes the first look at many lights at
-//! once. Where that leaves a light open, the search goes on for it alone.
+//! The first step is generic over [`Double`], so that a culler decides many lights at once. For a light that
+//! stays undecided, the search goes on in `f64`.
 
 use super::box_test::TileBounds;
 use crate::num::Double;
 
-/// More than halving an interval of `f64` numbers takes. Nearly all lights take one step or two, and one
-/// that is not decided at last is kept.
-const MOST_STEPS: u32 = 64;
+/// Budget for the root of a squared radius, in units of `f64::EPSILON`.
+const RADIUS_ROUNDINGS: f64 = 4.0;
 
-/// A light as this test takes it: the columns of M, whose third row is (0, 0, m), and the ball.
+/// Upper limit of the steps of the search: more than bisection of an interval of `f64` needs. Nearly all
+/// lights take one or two. A light that is undecided after the last is accepted.
+const MAX_STEPS: u32 = 64;
+
+/// A projected shape in the form that this test takes: the columns of M, whose third row is (0, 0, m), and
+/// the ball.
 #[derive(Clone, Copy, Debug)]
 pub struct Image<N> {
-    /// a and b, which have no depth, and d.
+    /// The first column; its third component is zero.
     pub a: [N; 2],
+    /// The second column; its third component is zero.
     pub b: [N; 2],
+    /// The third column.
     pub d: [N; 3],
+    /// c, the centre of the ball.
     pub center: [N; 3],
-    /// Not less than the root of the next.
+    /// Not less than the root of `radius_squared`.
     pub radius: N,
     pub radius_squared: N,
 }
 
 impl<N: Double> Image<N> {
-    /// A ball with nothing stretched.
+    /// A sphere in camera space: M is the identity.
     #[inline(always)]
     pub fn of_sphere(center: [N; 3], radius_squared: N) -> Self {
         let (zero, one) = (radius_squared.splat(0.0), radius_squared.splat(1.0));
@@ -61,33 +68,34 @@ impl<N: Double> Image<N> {
             b: [zero, one],
             d: [zero, zero, one],
             center,
-            radius: radius_squared.sqrt() * (1.0 + 4.0 * f64::EPSILON),
+            radius: radius_squared.sqrt() * (1.0 + RADIUS_ROUNDINGS * f64::EPSILON),
             radius_squared,
         }
     }
 }
 
-/// A ball, and a tile's image.
+/// The image of a tile, a frustum, and the ball that it is tested against.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frustum<N> {
     light: Image<N>,
+    /// The slopes x/z and y/z of the tile.
     slopes: [Interval<N>; 2],
-    /// Of the tile, as far as the ball reaches.
+    /// The depths that both the tile and the ball have.
     depths: Interval<N>,
     /// The depth of c.
     depth: N,
 }
 
-/// What is known once a point of the tile was looked at.
+/// The result of one step of the search.
 pub(crate) struct Verdict<N: Double> {
-    /// Whether neither a point in the ball nor a plane between both has been found.
-    pub is_open: N::Mask,
-    /// Whether a plane has.
-    pub is_apart: N::Mask,
+    /// Whether the step found neither a point of the tile in the ball nor a plane that separates them.
+    pub is_undecided: N::Mask,
+    /// Whether the step found a plane that separates them.
+    pub is_separated: N::Mask,
 }
 
 impl<N: Double> Frustum<N> {
-    /// The image of `tile` beside that of `light`.
+    /// The image of `tile` under the map of `light`, and the ball of `light`.
     #[inline(always)]
     pub fn new(light: Image<N>, tile: TileBounds<N>) -> Self {
         let [near, far] = tile.depths;
@@ -101,18 +109,18 @@ impl<N: Double> Frustum<N> {
         }
     }
 
-    /// Whether the ball reaches no depth of the tile.
+    /// Whether the tile and the ball have no depth in common.
     #[inline(always)]
     pub fn is_out_of_reach(&self) -> N::Mask {
         self.depths.min.gt(self.depths.max)
     }
 
-    /// What the nearest point at the depth of c tells, or at the nearest that the tile has.
+    /// The first step of the search, at the depth of c clamped to the depths of the tile.
     #[cfg(feature = "cull")]
     #[inline(always)]
     pub fn first_verdict(&self) -> Verdict<N> {
         let nearest = Section::new(self).nearest(self, self.first_depth());
-        self.seen_along(nearest.way).verdict
+        self.separation(nearest.offset).verdict
     }
 
     #[inline(always)]
@@ -120,9 +128,9 @@ impl<N: Double> Frustum<N> {
         self.depths.clamped(self.depth)
     }
 
-    /// What a plane at right angles to R tells, and the point that R leads to.
+    /// Tests the plane normal to R, and the point of the tile at c + R.
     #[inline(always)]
-    fn seen_along(&self, [r0, r1, r2]: [N; 3]) -> Seen<N> {
+    fn separation(&self, [r0, r1, r2]: [N; 3]) -> Separation<N> {
         let Image { a, b, d, .. } = self.light;
         let ([x, y], [c0, c1, c2]) = (self.slopes, self.light.center);
         let middle = [
@@ -133,100 +141,101 @@ impl<N: Double> Frustum<N> {
         let slope = (r0 * middle[0] + r1 * middle[1] + r2 * d[2])
             - (along_sides[0].abs() * x.half + along_sides[1].abs() * y.half);
         let z = self.depths;
-        // How far beyond c the tile begins, times ‖R‖.
-        let begins = slope * z.middle - slope.abs() * z.half;
-        let apart = begins - (r0 * c0 + r1 * c1 + r2 * c2);
+        // The signed distance along R from c to the tile, times ‖R‖.
+        let least = slope * z.middle - slope.abs() * z.half;
+        let distance = least - (r0 * c0 + r1 * c1 + r2 * c2);
         let squared = r0 * r0 + r1 * r1 + r2 * r2;
-        let beyond = apart * apart.abs() - squared * self.light.radius_squared;
+        let beyond = distance * distance.abs() - squared * self.light.radius_squared;
         let within = self.light.radius_squared - squared;
         let zero = squared.splat(0.0);
-        Seen {
+        Separation {
             slope,
             verdict: Verdict {
-                // Both in one: which of them it is could not be guessed. No NaN rejects.
-                is_open: zero.gt(within.max(beyond)),
-                is_apart: beyond.gt(zero),
+                // One comparison, since a branch on either would be mispredicted. NaN does not reject.
+                is_undecided: zero.gt(within.max(beyond)),
+                is_separated: beyond.gt(zero),
             },
         }
     }
 }
 
-/// What a way R from c tells of the tile.
-struct Seen<N: Double> {
-    /// s
+/// The result of a test along R.
+struct Separation<N: Double> {
+    /// s, half the slope of g.
     slope: N,
     verdict: Verdict<N>,
 }
 
 impl Frustum<f64> {
-    /// Whether the ball touches the tile; true of what is not finite.
+    /// Whether the ball touches the tile. True if a number is not finite.
     #[inline(always)]
     pub fn meets_ball(&self) -> bool {
         if self.is_out_of_reach() {
             return false;
         }
         let section = Section::new(self);
-        let mut tried = [f64::NEG_INFINITY, f64::INFINITY];
+        let mut bracket = [f64::NEG_INFINITY, f64::INFINITY];
         let mut z = self.first_depth();
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             let nearest = section.nearest(self, z);
-            let Seen { slope, verdict } = self.seen_along(nearest.way);
-            if !verdict.is_open {
-                return !verdict.is_apart;
+            let Separation { slope, verdict } = self.separation(nearest.offset);
+            if !verdict.is_undecided {
+                return !verdict.is_separated;
             }
-            // The least is on the side to which g falls.
+            // The minimum is on the side to which g falls.
             if slope > 0.0 {
-                tried[1] = z;
+                bracket[1] = z;
             } else {
-                tried[0] = z;
+                bracket[0] = z;
             }
             let next = z - slope / self.curvature(&nearest, z);
-            z = self.between(tried, next);
+            z = self.next_depth(bracket, next);
         }
         true
     }
 
-    /// The depth to try after those at both ends of `tried`, between which the least lies: `next`, or
-    /// the middle if that leads out.
+    /// The next depth of the search: `next`, or the middle of `bracket` if `next` lies outside it.
     #[inline(always)]
-    fn between(&self, tried: [f64; 2], next: f64) -> f64 {
+    fn next_depth(&self, bracket: [f64; 2], next: f64) -> f64 {
         let next = self.depths.clamped(next);
-        if tried[0] < next && next < tried[1] {
+        if bracket[0] < next && next < bracket[1] {
             next
         } else {
-            self.depths.clamped(0.5 * (tried[0] + tried[1]))
+            self.depths.clamped(0.5 * (bracket[0] + bracket[1]))
         }
     }
 
-    /// Half the second derivative of g at `z`, on the side of a parabola's end that `nearest` is on.
+    /// Half the second derivative of g at `z`, in the piece that `nearest` belongs to.
     #[inline(always)]
     fn curvature(&self, nearest: &Nearest<f64>, z: f64) -> f64 {
-        let [r0, r1, _] = nearest.way;
+        let [r0, r1, _] = nearest.offset;
         let w = [
             (r0 + self.light.center[0]) / z,
             (r1 + self.light.center[1]) / z,
         ];
-        let beside = |[e0, e1]: [f64; 2]| {
+        // The square of the part of w across a side.
+        let across = |[e0, e1]: [f64; 2]| {
             let area = w[0] * e1 - w[1] * e0;
             area * area / (e0 * e0 + e1 * e1)
         };
-        let slides = [nearest.u, nearest.v].map(|[nearest, free]| nearest == free);
-        let in_plane = match slides {
+        let is_free = [nearest.u, nearest.v].map(|[clamped, free]| clamped == free);
+        let in_plane = match is_free {
             [true, true] => 0.0,
-            [true, false] => beside(self.light.a),
-            [false, true] => beside(self.light.b),
+            [true, false] => across(self.light.a),
+            [false, true] => across(self.light.b),
             [false, false] => w[0] * w[0] + w[1] * w[1],
         };
         in_plane + self.light.d[2] * self.light.d[2]
     }
 }
 
-/// Coordinates u and v along a and b in the sections, all of which are parallel.
+/// The coordinates u and v along a and b, which are the same for all sections.
 struct Section<N> {
-    /// u* = `foot[0][0]` − z `foot[0][1]`, and v*.
+    /// The coefficients of u* = `foot[0][0]` − z `foot[0][1]`, and of v*.
     foot: [[N; 2]; 2],
-    /// By how much the nearest u grows as v falls, and v as u falls.
+    /// The growth of the nearest u where v falls.
     u_per_v: N,
+    /// The growth of the nearest v where u falls.
     v_per_u: N,
 }
 
@@ -255,7 +264,7 @@ impl<N: Double> Section<N> {
     /// The point of the section at depth `z` that is nearest to c.
     #[inline(always)]
     fn nearest(&self, frustum: &Frustum<N>, z: N) -> Nearest<N> {
-        // No array is mapped: where N is a vector, that is a call, through memory.
+        // No `array::map`, which is a call through memory if N is a vector.
         let at_depth = |[at_eye, per_depth]: [N; 2]| at_eye - per_depth * z;
         let (u_foot, v_foot) = (at_depth(self.foot[0]), at_depth(self.foot[1]));
         let [across, down] = frustum.slopes;
@@ -274,13 +283,9 @@ impl<N: Double> Section<N> {
             center,
             ..
         } = frustum.light;
-        let (u_apart, v_apart) = (u - u_foot, v - v_foot);
+        let (du, dv) = (u - u_foot, v - v_foot);
         Nearest {
-            way: [
-                u_apart * a0 + v_apart * b0,
-                u_apart * a1 + v_apart * b1,
-                d[2] * z - center[2],
-            ],
+            offset: [du * a0 + dv * b0, du * a1 + dv * b1, d[2] * z - center[2]],
             u: [u, u_free],
             v: [v, v_free],
         }
@@ -289,13 +294,15 @@ impl<N: Double> Section<N> {
 
 /// The point of a section that is nearest to c.
 struct Nearest<N> {
-    /// R, from c.
-    way: [N; 3],
-    /// u and v, and where they would be if their intervals had no ends.
+    /// R, from c to the point.
+    offset: [N; 3],
+    /// u, and its value before the last clamp.
     u: [N; 2],
+    /// v, and its value before the last clamp.
     v: [N; 2],
 }
 
+/// An interval, with its middle and half its length.
 #[derive(Clone, Copy, Debug)]
 struct Interval<N> {
     min: N,

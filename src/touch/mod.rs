@@ -1,4 +1,4 @@
-//! Whether a shape in camera space touches a tile.
+//! Tests of a projected shape against a tile: the box test and the exact test.
 
 mod box_test;
 mod frustum;
@@ -10,47 +10,51 @@ pub(crate) use frustum::Frustum;
 use crate::project::{ProjectedEllipsoid, ProjectedHalfSpace, ProjectedSphere};
 use crate::view::{DepthInterval, TileRectangle};
 
-/// Whether a light may touch a tile. For generic code: what implements it has these functions itself.
+/// Tests whether a projected bound touches a tile.
+///
+/// For generic code. Each implementor also has these as inherent functions, but for the half-space, which has
+/// no exact test.
 pub trait TileTest {
-    /// Whether the light may reach a point whose slopes lie in `rectangle` and whose depth lies in
-    /// `depths`.
+    /// Whether the bound may hold a point whose slopes lie in `rectangle` and whose depth lies in `depths`.
     ///
-    /// Never false where it does reach one, and true for some tiles that it does not.
+    /// Conservative: always true if it holds such a point, and true for some tiles without one.
     fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool;
 
-    /// Whether the light may reach such a point, as nearly as it can be told: false of all that
-    /// [`touches`](Self::touches) is false of, and of more where there is an exact test.
+    /// The exact test: [`touches`](Self::touches) with fewer false positives.
     ///
-    /// Never false where the light does reach a point of the tile. Takes several times as long; worth
-    /// it where what is done with each light of a list takes longer.
+    /// Always true if the bound holds a point of the tile. False whenever [`touches`](Self::touches) is
+    /// false, and for nearly all other tiles without a point of the bound, if there is an exact test.
+    ///
+    /// Takes several times as long as the box test. Worth it if the work for each light of a list takes
+    /// longer than that.
     fn touches_exactly(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
         self.touches(rectangle, depths)
     }
 }
 
 impl ProjectedEllipsoid {
-    /// The paper's test of the box around the tile's image [Tokuyoshi & Harada 2017, Sec. 5.2].
+    /// The box test: the unit sphere against the bounding box of the tile's image
+    /// [Tokuyoshi & Harada 2017, Sec. 5.2].
     ///
-    /// Never false where the light reaches a point whose slopes lie in `rectangle` and whose depth lies in
-    /// `depths`, and true for some tiles that it does not reach.
+    /// Always true if the ellipsoid holds a point whose slopes lie in `rectangle` and whose depth lies in
+    /// `depths`. True for some tiles without such a point.
     #[inline]
     #[must_use]
     pub fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
         touches_box(self, &TileBounds::new(rectangle, depths))
     }
 
-    /// The box test, and then the distance from the centre of the unit sphere to the tile's image
-    /// itself, a frustum.
+    /// The exact test: the box test, then the unit sphere against the tile's image itself, a frustum.
     ///
-    /// Takes several times as long as [`touches`](Self::touches); worth it where what is done with each light
-    /// of a list takes longer.
+    /// Always true if the ellipsoid holds a point of the tile. Takes several times as long as
+    /// [`touches`](Self::touches). Worth it if the work for each light of a list takes longer than that.
     ///
     /// ```
     /// use stochastic_light_culling::{
     ///     Camera, DepthInterval, Ellipsoid, TileRectangle, glam::{Mat3, Vec2, Vec3},
     /// };
     ///
-    /// // Beside a deep tile far off the axis, but in the box around it.
+    /// // Beside a deep tile far off the axis, but in its bounding box.
     /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.5, 1.0, 0.1..100.0)?;
     /// let center = Vec3::new(5.5, 0.0, -5.2);
     /// let ellipsoid = Ellipsoid::new(center, Mat3::IDENTITY, Vec3::new(0.5, 1.0, 0.5))?;
@@ -70,17 +74,20 @@ impl ProjectedEllipsoid {
 }
 
 impl ProjectedSphere {
-    /// The test against the tile's box in camera space.
+    /// The box test: the sphere against the bounding box of the tile in camera space.
     ///
-    /// Never false where the light reaches a point whose slopes lie in `rectangle` and whose depth lies in
-    /// `depths`, and true for some tiles that it does not reach.
+    /// Always true if the sphere holds a point whose slopes lie in `rectangle` and whose depth lies in
+    /// `depths`. True for some tiles without such a point.
     #[inline]
     #[must_use]
     pub fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
         touches_box(self, &TileBounds::new(rectangle, depths))
     }
 
-    /// The box test, and then the distance to the tile itself.
+    /// The exact test: the box test, then the sphere against the tile itself.
+    ///
+    /// Always true if the sphere holds a point of the tile. Takes several times as long as
+    /// [`touches`](Self::touches).
     #[inline]
     #[must_use]
     pub fn touches_exactly(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
@@ -90,10 +97,10 @@ impl ProjectedSphere {
 }
 
 impl ProjectedHalfSpace {
-    /// The test of the corner of the tile that lies farthest along the normal.
+    /// Tests the corner of the tile that is farthest along the normal.
     ///
-    /// Never false where a point whose slopes lie in `rectangle` and whose depth lies in `depths` is in the
-    /// half-space.
+    /// Always true if the half-space holds a point whose slopes lie in `rectangle` and whose depth lies in
+    /// `depths`. False for all other tiles, but for rounding.
     #[inline]
     #[must_use]
     pub fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
@@ -102,7 +109,7 @@ impl ProjectedHalfSpace {
         let farthest = a.max(b);
         let at_one = farthest.x + farthest.y + farthest.z + self.rounding_at_one();
         let most = (at_one * depths.near()).max(at_one * depths.far());
-        // Not `>=`: an overflow to NaN does not lose the light.
+        // Not `>=`, which would be false if an overflow makes NaN.
         !matches!(
             most.partial_cmp(&self.offset()),
             Some(core::cmp::Ordering::Less)
@@ -110,12 +117,14 @@ impl ProjectedHalfSpace {
     }
 }
 
+/// The box test of one shape.
 #[inline(always)]
 fn touches_box<P: BoxTest>(shape: &P, tile: &TileBounds<f32>) -> bool {
     let fields = shape.to_fields();
     !P::misses(&fields, &P::row(&fields, tile.down), tile)
 }
 
+/// The exact test of one shape, after the box test.
 #[inline(always)]
 fn touches_frustum<P: BoxTest>(shape: &P, tile: &TileBounds<f32>) -> bool {
     let fields = shape.to_fields();

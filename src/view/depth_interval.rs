@@ -1,9 +1,10 @@
 use crate::base::{Error, number_in};
 use crate::num::power;
 
-/// The depths from `near` to `far`, both included, that a tile's surfaces lie in.
+/// An interval of depths that holds the surfaces in a tile. Both ends are included.
 ///
-/// Those made from a depth buffer leave out sky: depths that are NaN, infinite, zero or negative.
+/// Depths are distances along the viewing direction, in the unit of the scene. The functions that take
+/// depths of a depth buffer ignore sky, which is a depth that is NaN, infinite, zero or negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthInterval {
     near: f32,
@@ -11,7 +12,7 @@ pub struct DepthInterval {
 }
 
 impl DepthInterval {
-    /// The interval from `near` to `far`. Equal depths are one plane: a wall that faces the eye.
+    /// Creates the interval from `near` to `far`. Equal ends are valid: a wall that faces the camera.
     ///
     /// # Errors
     ///
@@ -24,19 +25,19 @@ impl DepthInterval {
         Ok(Self { near, far })
     }
 
-    /// The least depth.
+    /// The near end.
     #[must_use]
     pub fn near(&self) -> f32 {
         self.near
     }
 
-    /// The greatest depth.
+    /// The far end.
     #[must_use]
     pub fn far(&self) -> f32 {
         self.far
     }
 
-    /// The least interval that holds `depths`; `None` if all of them are sky.
+    /// The smallest interval that holds `depths`. `None` if all of them are sky.
     pub fn around(depths: impl IntoIterator<Item = f32>) -> Option<Self> {
         depths
             .into_iter()
@@ -55,7 +56,9 @@ impl DepthInterval {
             })
     }
 
-    /// *`HalfZ`*: the interval around `depths`, cut in two at its middle [Stewart 2015].
+    /// *`HalfZ`*: the smallest interval that holds `depths`, split at its middle [Stewart 2015].
+    ///
+    /// The nearer half comes first. `None` if all depths are sky.
     ///
     /// ```
     /// use stochastic_light_culling::DepthInterval;
@@ -79,11 +82,11 @@ impl DepthInterval {
         ])
     }
 
-    /// *Modified `HalfZ`*: the depths are parted at the middle of their interval, and each part
-    /// has the least interval that holds it [Stewart 2015].
+    /// *Modified `HalfZ`*: the depths are split at the middle of their interval, and each part has the
+    /// smallest interval that holds it [Stewart 2015].
     ///
-    /// The nearer part first. It holds the middle itself; the farther one is `None` where all depths
-    /// are equal, and both are where all of them are sky.
+    /// The nearer part comes first and includes the middle. The farther part is `None` if all depths are
+    /// equal. Both are `None` if all depths are sky.
     ///
     /// ```
     /// use stochastic_light_culling::DepthInterval;
@@ -107,12 +110,12 @@ impl DepthInterval {
         ]
     }
 
-    /// The interval cut into `count` slices, each as many times as deep at its end as at its beginning:
-    /// what clustered shading divides the view into [Olsson et al. 2012]. Neighbours share their depth, and
-    /// the first and the last one end where the interval does. None for no slices.
+    /// Splits the interval into `count` slices with equal ratios of far to near, as clustered shading does
+    /// [Olsson et al. 2012].
     ///
-    /// Of an interval that begins nearer than 2⁻²⁰ of where it ends, the first slice takes in what is nearer
-    /// than that.
+    /// Neighbouring slices share an end, and all slices together are the interval. A `count` of zero gives no
+    /// slices. If `near` is less than 2⁻²⁰ of `far`, which includes zero, the ratios begin at 2⁻²⁰ of `far`,
+    /// and the first slice also holds all that is nearer.
     ///
     /// ```
     /// use stochastic_light_culling::DepthInterval;
@@ -123,15 +126,15 @@ impl DepthInterval {
     /// # Ok::<(), stochastic_light_culling::Error>(())
     /// ```
     pub fn exponential_slices(&self, count: u32) -> impl Iterator<Item = Self> + Clone + use<> {
-        const NEAREST: f32 = 1.0 / 1_048_576.0;
+        const MIN_NEAR_SHARE: f32 = 1.0 / 1_048_576.0;
         let Self { near, far } = *self;
-        let first = near.max(NEAREST * far);
+        let first = near.max(MIN_NEAR_SHARE * far);
         let cut = move |slice: u32| match slice {
             0 => near,
             _ if slice == count => far,
             _ => {
                 let share = slice as f32 / count as f32;
-                // NaN, where all depths are zero, is neither the greater nor the lesser.
+                // 0/0 if both ends are zero; `max` and `min` ignore NaN.
                 (first * power(far / first, share)).max(near).min(far)
             }
         };
@@ -142,8 +145,8 @@ impl DepthInterval {
     }
 
     fn middle(&self) -> f32 {
-        // Halved first: the sum of two large depths overflows. The halves of subnormal depths are rounded,
-        // which can take their sum out of the interval.
+        // Halved first, since the sum of two large depths overflows. Clamped, since the halves of subnormal
+        // depths round.
         (0.5 * self.near + 0.5 * self.far)
             .max(self.near)
             .min(self.far)

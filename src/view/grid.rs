@@ -1,24 +1,24 @@
 use crate::base::Error;
 
-/// A rectangle of pixels: from `min`, included, to `max`, not included. (0, 0) is at the top left.
+/// A rectangle of pixels, from `min` (inclusive) to `max` (exclusive). Pixel (0, 0) is at the top left.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PixelRectangle {
     /// The pixel at the top left.
     pub min: [u32; 2],
-    /// One past the pixel at the bottom right, in both directions.
+    /// One past the pixel at the bottom right, in x and in y.
     pub max: [u32; 2],
 }
 
 impl PixelRectangle {
-    /// All pixels, row by row.
+    /// Iterates over the pixels, row by row. None if `max` is not greater than `min` in both components.
     pub fn pixels(self) -> impl Iterator<Item = [u32; 2]> + Clone {
         let [x, y] = [0, 1].map(|i| self.min[i]..self.max[i]);
         y.flat_map(move |y| x.clone().map(move |x| [x, y]))
     }
 }
 
-/// An image cut into square tiles; those at the right and at the bottom may be smaller.
+/// An image split into square tiles. The tiles at the right and at the bottom may be cut off.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct TileGrid {
     image_size: [u32; 2],
@@ -26,11 +26,12 @@ pub struct TileGrid {
 }
 
 impl TileGrid {
-    /// The grid of an image of `image_size` = \[width, height\] in tiles of `tile_size`² pixels.
+    /// Creates the grid of an image of `image_size` = \[width, height\] pixels, with tiles of `tile_size`²
+    /// pixels.
     ///
     /// # Errors
     ///
-    /// [`Error::Size`] if any of these is zero.
+    /// [`Error::Size`] if a side of the image or `tile_size` is zero.
     pub fn new(image_size: [u32; 2], tile_size: u32) -> Result<Self, Error> {
         let positive = |quantity, value: [u32; 2]| {
             let valid = "at least 1×1";
@@ -62,19 +63,19 @@ impl TileGrid {
         self.tile_size
     }
 
-    /// How many tiles there are, across and down.
+    /// The number of tiles, \[columns, rows\].
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
         self.image_size.map(|n| n.div_ceil(self.tile_size))
     }
 
-    /// All tiles, row by row.
+    /// Iterates over the tiles as \[column, row\], row by row.
     pub fn tiles(&self) -> impl Iterator<Item = [u32; 2]> + Clone {
         let max = self.size();
         PixelRectangle { min: [0; 2], max }.pixels()
     }
 
-    /// The pixels of `tile`; none of a tile outside the grid.
+    /// The pixels of `tile`. None for a tile outside the grid.
     #[inline]
     #[must_use]
     pub fn pixels(&self, tile: [u32; 2]) -> PixelRectangle {
@@ -86,7 +87,7 @@ impl TileGrid {
         }
     }
 
-    /// The tile that `pixel` is in.
+    /// The tile that holds `pixel`. Outside the grid for a pixel outside the image.
     #[inline]
     #[must_use]
     pub fn tile_of(&self, pixel: [u32; 2]) -> [u32; 2] {

@@ -1,4 +1,4 @@
-//! What is seen: the camera, the tiles of its image, and the depths in them.
+//! The camera, the tiles of its image, and the depths in them.
 
 mod camera;
 mod depth_interval;
@@ -8,7 +8,7 @@ mod rectangle;
 
 pub use camera::Camera;
 #[cfg(feature = "serde")]
-pub(crate) use camera::Parts;
+pub(crate) use camera::CameraParts;
 pub use depth_interval::DepthInterval;
 pub use grid::{PixelRectangle, TileGrid};
 pub use interleave::Interleave;

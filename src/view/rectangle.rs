@@ -2,48 +2,51 @@ use glam::Vec2;
 
 use crate::base::Error;
 
-/// What a tile covers of the plane at depth 1: a rectangle of slopes (x/z, y/z), its edges included.
+/// The slopes (x/z, y/z) that a tile covers: a rectangle of the plane at depth 1. Its edges are included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TileRectangle {
     min: Vec2,
     max: Vec2,
 }
 
-/// The greatest slope, far beyond those in a view, which are at most 200.
+/// Upper limit of a slope. Those in a view are at most 200.
 ///
-/// It keeps infinities out of the tile test's sums: since M = BS with B orthonormal, its elements are at most
-/// 10³⁰, the reciprocal of the least semi-axis that a projected ellipsoid has, and below 10³³ with their
-/// rounding, so that its image of a point at depth 1 is below 10³⁷. The product of that and a depth of zero is
-/// zero, where it would be NaN of an infinity.
-const MOST_SLOPE: f32 = 1e6;
+/// Keeps infinities out of the sums of the tile test. The shortest semi-axis of a projected ellipsoid is at
+/// least 10⁻³⁰, and M = BS with B orthonormal, so the elements of M are at most 10³⁰, below 10³³ with their
+/// rounding. So the image of a point at depth 1 is below 10³⁷, and its product with a depth of zero is zero.
+/// With an infinity that product would be NaN.
+const MAX_SLOPE: f32 = 1e6;
 
 impl TileRectangle {
-    /// The rectangle from `min` to `max`, within the view that lights are stretched for; see
-    /// [`Camera::tile_rectangle`](crate::Camera::tile_rectangle).
+    /// Creates the rectangle from `min` to `max`.
+    ///
+    /// It should lie within the view of the camera that lights are projected with. Outside the view, rounding
+    /// can lose a light. [`Camera::tile`](crate::Camera::tile) gives the tiles of a view.
     ///
     /// # Errors
     ///
-    /// [`Error::Vector`] if a slope is NaN or beyond ±10⁶, or a component of `min` exceeds that of `max`.
+    /// [`Error::Vector`] if a slope is NaN or outside ±10⁶, or a component of `min` is greater than that of
+    /// `max`.
     pub fn new(min: Vec2, max: Vec2) -> Result<Self, Error> {
         let refused = |value: Vec2, valid| Error::Vector {
             quantity: "corner of a tile",
             value: value.extend(1.0),
             valid,
         };
-        let within = |corner: Vec2| corner.abs().cmple(Vec2::splat(MOST_SLOPE)).all();
+        let within = |corner: Vec2| corner.abs().cmple(Vec2::splat(MAX_SLOPE)).all();
         if !within(min) {
             return Err(refused(min, "within ±10⁶"));
         }
         if !(within(max) && min.cmple(max).all()) {
             return Err(refused(
                 max,
-                "within ±10⁶ and not less than its least corner",
+                "within ±10⁶ and not less than the least corner",
             ));
         }
         Ok(Self { min, max })
     }
 
-    /// The rectangle between two corners, both within the greatest slope.
+    /// The rectangle between two opposite corners, whose slopes are within ±[`MAX_SLOPE`].
     #[inline]
     pub(crate) fn from_corners(a: Vec2, b: Vec2) -> Self {
         Self {
@@ -52,13 +55,13 @@ impl TileRectangle {
         }
     }
 
-    /// The least slopes.
+    /// The least slope x/z and the least slope y/z.
     #[must_use]
     pub fn min(&self) -> Vec2 {
         self.min
     }
 
-    /// The greatest slopes.
+    /// The greatest slope x/z and the greatest slope y/z.
     #[must_use]
     pub fn max(&self) -> Vec2 {
         self.max
