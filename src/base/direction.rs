@@ -5,6 +5,10 @@ use glam::Vec3;
 use super::Error;
 use crate::num::{self, Single, Vector3, dot_f64};
 
+/// Largest error of the squared length of a saved direction that is read unchanged, in units of u.
+#[cfg(feature = "serde")]
+const UNIT_LENGTH_ROUNDINGS: f64 = 8.0;
+
 /// A unit vector.
 ///
 /// Unit length to a few units in the last place, so nothing after the constructor checks again. It
@@ -69,7 +73,7 @@ impl Direction {
     #[cfg(feature = "serde")]
     pub(crate) fn of_unit_or_any_length(vector: Vec3) -> Result<Self, Error> {
         // The length is off by 3.5u at most, its square by twice that.
-        const NEAR: f64 = 8.0 * num::UNIT_ROUNDOFF as f64;
+        const NEAR: f64 = UNIT_LENGTH_ROUNDINGS * num::UNIT_ROUNDOFF as f64;
         if (dot_f64(vector, vector) - 1.0).abs() <= NEAR {
             Ok(Self(vector))
         } else {

@@ -58,6 +58,11 @@ use super::{BoundStrategy, Bounded, Ellipsoid, Triaxial};
 use crate::lobe::{AnisotropicGgxLobe, Fresnel, GgxLobes, MaskingShadowing, SurfaceAxes};
 use crate::num::{Double, Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3, exact_dot};
 
+/// Pays for rounding axes and centre to `f32`, in units of u times the longest semi-axis and the centre's length.
+const POINT_ROUNDINGS: f64 = 4.0;
+/// Pays for the rounding of r′ and of its product with a semi-axis.
+const SEMI_AXIS_ROUNDINGS: u16 = 24;
+
 /// An ellipsoid for Φ/(δξ) = 1, with the joint maximum of F and G2
 /// ([`max_reflected`](AnisotropicGgxLobe::max_reflected)).
 ///
@@ -196,12 +201,12 @@ impl<D: Double> Incidence<D> {
         let [a, b, c] = semi_axes;
         let (shortest, longest) = (a.min(b).min(c), a.max(b).max(c));
         // Half an ulp in each component of three axes, 1.5u, and of the centre.
-        let moved = (longest + center.length()) * (4.0 * f64::from(UNIT_ROUNDOFF));
+        let moved = (longest + center.length()) * (POINT_ROUNDINGS * f64::from(UNIT_ROUNDOFF));
         let one = moved.splat(1.0);
         let share = (moved / shortest).min(one);
         let enlarged = |a: D| {
             let squared = (share + 1.0) * a * a + (one / share + 1.0) * moved * moved;
-            (N::narrow(squared.sqrt()) * scale).round_up(24)
+            (N::narrow(squared.sqrt()) * scale).round_up(SEMI_AXIS_ROUNDINGS)
         };
         let axis = |axis: Vector3<D>| Vector3::narrow(self.to_world(axis, one));
         Ellipsoids {

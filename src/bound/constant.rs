@@ -6,12 +6,16 @@ use super::{BoundStrategy, Bounded, Paper, Sphere};
 use crate::lobe::ConstantLobe;
 use crate::num::{Single, Vector3, round_up, sqrt};
 
+/// Pays for the rounding of √(1/4π).
+const RADIUS_ROUNDINGS: u16 = 2;
+
 /// The isosurface itself, the sphere of radius √(1/4π) around the light [Tokuyoshi & Harada 2016].
 impl BoundStrategy<ConstantLobe> for Paper {
     type Shape = Sphere;
 
     fn unit_bound(&self, _: &ConstantLobe) -> Sphere {
-        Sphere::from_parts(Vec3::ZERO, round_up(sqrt(ConstantLobe::VALUE), 2))
+        let radius = round_up(sqrt(ConstantLobe::VALUE), RADIUS_ROUNDINGS);
+        Sphere::from_parts(Vec3::ZERO, radius)
     }
 
     type PerLight = ();

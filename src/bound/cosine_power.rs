@@ -44,6 +44,13 @@
 use super::Ellipsoids;
 use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3, power};
 
+/// Pays for the error of the polynomial for z₁.
+const RING_ROUNDINGS: u16 = 24;
+/// Pays for the rounding of axis, frame and centre, in units of u times longest over shortest semi-axis.
+const AXES_TILT_ROUNDINGS: f32 = 16.0;
+/// Pays for the rounding of the semi-axes and of the reach.
+const SEMI_AXIS_ROUNDINGS: u16 = 64;
+
 /// An ellipsoid of revolution in each lane, for lobes that reach as far as 1 along their axis.
 #[derive(Clone, Copy)]
 pub(super) struct Revolved<N> {
@@ -106,7 +113,7 @@ impl<N: Single> Revolved<N> {
         for coefficient in RING {
             ring = ring * d + coefficient;
         }
-        let along = ring.round_up(24) * 0.75;
+        let along = ring.round_up(RING_ROUNDINGS) * 0.75;
         Self {
             center: along,
             along,
@@ -147,11 +154,12 @@ impl<N: Single> Revolved<N> {
         let (v, w) = axis.any_orthonormal_pair();
         let semi_axes = Vector3::new(self.along, self.across, self.across);
         // What the rounding of the axis, its frame and the centre moves, over the shortest semi-axis.
-        let moved = semi_axes.max_element() * (16.0 * UNIT_ROUNDOFF) / semi_axes.min_element();
+        let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
+        let moved = longest * (AXES_TILT_ROUNDINGS * UNIT_ROUNDOFF) / shortest;
         Ellipsoids {
             parts: [Vector3::zero(reach), axis * (self.center * reach)],
             axes: Matrix3::new(axis, v, w),
-            semi_axes: semi_axes * (reach * (moved + 1.0)).round_up(64),
+            semi_axes: semi_axes * (reach * (moved + 1.0)).round_up(SEMI_AXIS_ROUNDINGS),
         }
     }
 }

@@ -4,6 +4,9 @@ use super::shape::{Quads, Shape, ShapeLanes, rounding_of_sum, scaled};
 use crate::base::{Error, finite, orthonormal};
 use crate::num::{Matrix3, Single, Vector3};
 
+/// Pays for the rounding of the semi-axes' growth and of their product with it.
+const GROWTH_ROUNDINGS: u16 = 4;
+
 /// An ellipsoid, its surface included: {c + R diag(semi-axes) y : ‖y‖ ≤ 1}.
 ///
 /// The one shape that all bounds which are not spheres become before they meet a view. It is empty
@@ -142,7 +145,7 @@ impl<N: Single> ShapeLanes<N> for Ellipsoids<N> {
         let [light, offset] = [self.parts[0] * scale, self.parts[1] * scale];
         let sum = light + offset;
         let rounding = rounding_of_sum(light) + rounding_of_sum(offset) + rounding_of_sum(sum);
-        let growth = (rounding / semi_axes.min_element() + 1.0).round_up(4);
+        let growth = (rounding / semi_axes.min_element() + 1.0).round_up(GROWTH_ROUNDINGS);
         Self {
             parts: [position, sum],
             axes: self.axes,

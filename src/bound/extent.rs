@@ -14,6 +14,17 @@ use crate::base::Direction;
 use crate::lobe::{Fresnel, GgxLobe, MaskingShadowing, unit};
 use crate::num::{Vector3, round_up, sqrt};
 
+/// Pays for rounding the eigenvalue to `f32`.
+const EIGENVALUE_ROUNDINGS: u16 = 1;
+/// Pays for the rounding of r/α and of its product with the eigenvalue.
+const EXTENT_ROUNDINGS: u16 = 16;
+/// Newton's method ends where the cubic is below this share of the squared root: there it is mostly rounding.
+const NEGLIGIBLE_VALUE: f64 = 1e-13;
+/// Newton's method ends where its step is below this share of the root.
+const NEGLIGIBLE_STEP: f64 = 1e-9;
+/// Pays for the rounding of the cubic's coefficients, which counts most at a double root.
+const DOUBLE_ROOT_SHARE: f64 = 1e-7;
+
 impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
     /// An upper bound of d·x over the isosurface for Φ/(δξ) = 1 and a light at the origin, where d is
     /// the unit `direction`. Exact but for rounding, which is upward, for the surface of the NDF alone,
@@ -47,7 +58,8 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
         let masking = self.lanes().masking_over_four_cosines();
         let radius_squared = self.max_reflected() * masking * core::f32::consts::FRAC_1_PI;
         let over_alpha = sqrt(radius_squared) / alpha;
-        round_up(over_alpha * round_up(eigenvalue as f32, 1), 16)
+        let eigenvalue = round_up(eigenvalue as f32, EIGENVALUE_ROUNDINGS);
+        round_up(over_alpha * eigenvalue, EXTENT_ROUNDINGS)
     }
 }
 
@@ -116,11 +128,11 @@ impl Cubic {
     fn largest_root_above(&self) -> f64 {
         let (mut root, mut step) = (self.norm, self.norm);
         // Towards the largest of three real roots steps become smaller, until rounding says otherwise.
-        while step > 1e-9 * root {
+        while step > NEGLIGIBLE_STEP * root {
             let value = ((root - self.trace) * root + self.minors) * root - self.determinant;
             // Near a double root both are mostly rounding, and their quotient means nothing. The roundings
             // of `value` and of the coefficients come to less than a quarter of this, since α² ≤ root.
-            if value <= 1e-13 * root * root {
+            if value <= NEGLIGIBLE_VALUE * root * root {
                 break;
             }
             let slope = (3.0 * root - 2.0 * self.trace) * root + self.minors;
@@ -132,6 +144,6 @@ impl Cubic {
             root -= step;
         }
         // At a double root half of the digits are rounding.
-        root * (1.0 + 1e-7)
+        root * (1.0 + DOUBLE_ROOT_SHARE)
     }
 }

@@ -14,6 +14,9 @@ const RADIUS: f32 = 0.620_403_2;
 /// √(1/π)
 const ROOT_OF_ONE_OVER_PI: f32 = 0.564_189_6;
 
+/// Pays for the rounding of the sphere's radius and centre.
+const RADIUS_ROUNDINGS: u16 = 16;
+
 /// √ρ and n
 #[inline(always)]
 fn to_quads(lobe: &LambertLobe) -> Quads<f32> {
@@ -58,7 +61,7 @@ impl BoundStrategy<LambertLobe> for Paper {
         let (reach, normal) = reach_and_normal(quads);
         Spheres {
             center: normal * (reach * CENTER),
-            radius: (reach * RADIUS).round_up(16),
+            radius: (reach * RADIUS).round_up(RADIUS_ROUNDINGS),
         }
     }
 }

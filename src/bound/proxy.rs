@@ -13,6 +13,9 @@ use crate::num::{UNIT_ROUNDOFF, Vector3, sqrt_f64};
 
 type Vector = [f64; 3];
 
+/// Pays for rounding a vertex to `f32`, in units of u times the farthest component.
+const VERTEX_ROUNDINGS: f64 = 2.0;
+
 /// A closed triangle mesh that contains an [`Ellipsoid`], each triangle touching it: the geometry by which
 /// lights are splatted [Dachsbacher & Stamminger 2006].
 ///
@@ -97,7 +100,7 @@ impl Frame {
         let [x, y, z] = center.map(f64::abs);
         let farthest = x.max(y).max(z) + 2.0 * longest;
         let subnormal = f64::from(f32::from_bits(2));
-        let moved = 2.0 * f64::from(UNIT_ROUNDOFF) * farthest + subnormal;
+        let moved = VERTEX_ROUNDINGS * f64::from(UNIT_ROUNDOFF) * farthest + subnormal;
         let share = (moved / shortest).min(1.0);
         // A mirrored frame would turn the triangles inside out; an ellipsoid is its own mirror image.
         let side = axes[0].cross(axes[1]).dot(axes[2]).signum();

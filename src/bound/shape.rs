@@ -2,6 +2,11 @@ use glam::Vec3;
 
 use crate::num::{Quad, Single, UNIT_ROUNDOFF, Vector3};
 
+/// Pays for the product of a length and the scale.
+const SCALED_LENGTH_ROUNDINGS: u16 = 1;
+/// Pays for the rounding of a sum of vectors, in units of u times its largest component.
+const SUM_ROUNDINGS: f32 = 2.0;
+
 /// Quads that a shape or a lobe may have in a batch.
 pub const MAX_QUADS: usize = 5;
 
@@ -50,7 +55,9 @@ pub trait ShapeLanes<N: Single>: Copy {
 #[inline(always)]
 pub(super) fn scaled<N: Single>(length: N, scale: N) -> N {
     let least = scale.splat(f32::MIN_POSITIVE);
-    let product = (length * scale).round_up(1).max(least);
+    let product = (length * scale)
+        .round_up(SCALED_LENGTH_ROUNDINGS)
+        .max(least);
     let is_positive = length.is_positive() & scale.is_positive();
     N::select(is_positive, product, scale.zero())
 }
@@ -58,5 +65,5 @@ pub(super) fn scaled<N: Single>(length: N, scale: N) -> N {
 /// Upper bound, in length, of the rounding error of a sum of two vectors, component by component.
 #[inline(always)]
 pub(super) fn rounding_of_sum<N: Single>(sum: Vector3<N>) -> N {
-    sum.abs().max_element() * (2.0 * UNIT_ROUNDOFF)
+    sum.abs().max_element() * (SUM_ROUNDINGS * UNIT_ROUNDOFF)
 }

@@ -4,6 +4,9 @@ use super::shape::{MAX_QUADS, Quads, Shape, ShapeLanes, rounding_of_sum, scaled}
 use crate::base::{Error, finite, number_in};
 use crate::num::{Single, Vector3};
 
+/// Pays for the sum of the radius and the rounding of the centre.
+const PLACED_RADIUS_ROUNDINGS: u16 = 2;
+
 /// A ball, its surface included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
@@ -67,7 +70,7 @@ impl<N: Single> ShapeLanes<N> for Spheres<N> {
         let rounding = rounding_of_sum(offset) + rounding_of_sum(center);
         Self {
             center,
-            radius: (radius + rounding).round_up(2),
+            radius: (radius + rounding).round_up(PLACED_RADIUS_ROUNDINGS),
         }
     }
 

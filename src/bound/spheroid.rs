@@ -6,6 +6,21 @@ use super::{Ellipsoid, Sphere};
 use crate::base::Direction;
 use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3, round_up};
 
+/// Pays for the rounding of r and of its factor for a tilted axis.
+const RADIUS_ROUNDINGS: u16 = 16;
+/// Pays for the quotient r/α.
+const FOCUS_SPHERE_ROUNDINGS: u16 = 1;
+/// Pays for the rounding of r_u, and for most of that of the distance from focus to centre.
+const LONG_SEMI_AXIS_ROUNDINGS: u16 = 8;
+/// Pays for the sum of the radius and the rounding of the centre, and for the rest of the distance's.
+const ENCLOSING_SPHERE_ROUNDINGS: u16 = 2;
+/// Pays for the rounding of the frame, in units of u times r_u/r.
+const FRAME_TILT_ROUNDINGS: f32 = 8.0;
+/// Pays for the rounding of the semi-axes of an ellipsoid.
+const SEMI_AXIS_ROUNDINGS: u16 = 8;
+/// Pays for the growth of the radius of a spheroid whose focus is rounded.
+const MOVED_RADIUS_ROUNDINGS: u16 = 4;
+
 /// The paper's bounding spheroid, held by its focus, which is the light
 /// [Tokuyoshi & Harada 2017, Eqs. 12–15].
 ///
@@ -83,7 +98,10 @@ impl Spheroid {
     /// The sphere around the light of radius r/α, the bound of the 2016 method (Fig. 9a).
     #[must_use]
     pub fn sphere_at_focus(&self) -> Sphere {
-        Sphere::from_parts(self.focus, round_up(self.radius / self.roughness, 1))
+        Sphere::from_parts(
+            self.focus,
+            round_up(self.radius / self.roughness, FOCUS_SPHERE_ROUNDINGS),
+        )
     }
 
     /// The smallest sphere around the spheroid (Fig. 9b).
@@ -95,9 +113,10 @@ impl Spheroid {
         let offset = self.lanes().center_offset();
         let center = Vector3::from(self.focus) + offset;
         // The distance itself is off by four roundings of at most r_u.
-        let radius = round_up(self.long_semi_axis(), 8);
+        let radius = round_up(self.long_semi_axis(), LONG_SEMI_AXIS_ROUNDINGS);
         let rounding = rounding_of_sum(offset) + rounding_of_sum(center);
-        Sphere::from_parts(center.into(), round_up(radius + rounding, 2))
+        let radius = round_up(radius + rounding, ENCLOSING_SPHERE_ROUNDINGS);
+        Sphere::from_parts(center.into(), radius)
     }
 }
 
@@ -127,7 +146,7 @@ impl<N: Single> Spheroids<N> {
         Self {
             focus: Vector3::zero(radius),
             axis,
-            radius: (radius * (x * (x + 1.0) + 1.0)).round_up(16),
+            radius: (radius * (x * (x + 1.0) + 1.0)).round_up(RADIUS_ROUNDINGS),
             roughness,
         }
     }
@@ -154,13 +173,14 @@ impl<N: Single> Spheroids<N> {
         let offset = self.center_offset();
         // In units of the unit sphere: the offset's rounding over the shortest semi-axis, and the tilt
         // of the axes over the ratio of longest to shortest.
-        let tilt = long * (8.0 * UNIT_ROUNDOFF);
+        let tilt = long * (FRAME_TILT_ROUNDINGS * UNIT_ROUNDOFF);
         let growth = (rounding_of_sum(offset) + tilt) / self.radius + 1.0;
-        let short = (self.radius * growth).round_up(8);
+        let short = (self.radius * growth).round_up(SEMI_AXIS_ROUNDINGS);
+        let long = (long * growth).round_up(SEMI_AXIS_ROUNDINGS);
         Ellipsoids {
             parts: [self.focus, offset],
             axes: Matrix3::new(self.axis, v, w),
-            semi_axes: Vector3::new((long * growth).round_up(8), short, short),
+            semi_axes: Vector3::new(long, short, short),
         }
     }
 }
@@ -181,7 +201,7 @@ impl<N: Single> ShapeLanes<N> for Spheroids<N> {
         let offset = self.focus * scale;
         let focus = position + offset;
         let rounding = rounding_of_sum(offset) + rounding_of_sum(focus);
-        let grown = (radius + rounding / self.roughness).round_up(4);
+        let grown = (radius + rounding / self.roughness).round_up(MOVED_RADIUS_ROUNDINGS);
         let is_exact = is_at_origin | radius.eq(radius.zero());
         Self {
             focus: Vector3::select(is_exact, position, focus),

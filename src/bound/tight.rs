@@ -71,6 +71,15 @@ use crate::lobe::{
 };
 use crate::num::{Matrix3, Quad, Single, UNIT_ROUNDOFF, Vector3};
 
+/// Pays for the rounding of the least base that the table covers.
+const LEAST_BASE_ROUNDINGS: u16 = 2;
+/// Pays for the rounding of base + rise (1 − μ)⁵.
+const REFLECTED_ROUNDINGS: u16 = 192;
+/// Pays for the rounding of the axes and of the centre, in units of u times longest over shortest semi-axis.
+const AXES_TILT_ROUNDINGS: f32 = 12.0;
+/// Pays for the rounding of the semi-axes.
+const SEMI_AXIS_ROUNDINGS: u16 = 96;
+
 /// An ellipsoid around what the lobe sends above the surface, with its Fresnel factor, masking and shadowing,
 /// that has nearly as little as can be of the surfaces around the light inside.
 ///
@@ -155,7 +164,7 @@ impl<N: Single> Section<N> {
             (base, one)
         } else {
             // Below the table's least F0 the majorant is raised to it.
-            let least = (rise * table::LEAST_SHARE).round_up(2);
+            let least = (rise * table::LEAST_SHARE).round_up(LEAST_BASE_ROUNDINGS);
             let base = N::select(rises, base.max(least), base);
             (base, (base / (base + rise)).sqrt().sqrt())
         };
@@ -163,7 +172,7 @@ impl<N: Single> Section<N> {
         let [c_1, c_2, a_11, a_21, a_22, a_33] = interpolated(coordinates, rises);
         // The majorant's 1 − μ is off by μ's eight roundings, against at least LEAST_F0.
         let grazing = (one - cosine).max(zero).fifth_power();
-        let reflected = (base + rise * grazing).round_up(192);
+        let reflected = (base + rise * grazing).round_up(REFLECTED_ROUNDINGS);
 
         let most = lobe.max_fresnel_at(sine, fresnels);
         let over_spheroid = reflected / most;
@@ -247,12 +256,12 @@ impl<N: Single> Section<N> {
         let down = u.cross(across);
         let semi_axes = Vector3::new(long, short, self.across);
         let (least, most) = (short.min(self.across), long.max(self.across));
-        let tilt = most / least * (12.0 * UNIT_ROUNDOFF);
+        let tilt = most / least * (AXES_TILT_ROUNDINGS * UNIT_ROUNDOFF);
         let center = u * self.center[0] + down * self.center[1];
         Ellipsoids {
             parts: [Vector3::zero(radius), center * radius],
             axes: Matrix3::new(u * cosine + down * sine, down * cosine - u * sine, -across),
-            semi_axes: semi_axes * (radius * (tilt + 1.0).round_up(96)),
+            semi_axes: semi_axes * (radius * (tilt + 1.0).round_up(SEMI_AXIS_ROUNDINGS)),
         }
     }
 }

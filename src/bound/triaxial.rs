@@ -56,6 +56,11 @@ use super::{BoundStrategy, Ellipsoid, Triaxial};
 use crate::lobe::{Fresnel, GgxLobe, GgxLobes, MaskingShadowing};
 use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3};
 
+/// Pays for the rounding of the axes and of the centre, in units of u times longest over shortest semi-axis.
+const AXES_TILT_ROUNDINGS: f32 = 4.0;
+/// Pays for the rounding of the semi-axes.
+const SEMI_AXIS_ROUNDINGS: u16 = 64;
+
 /// An ellipsoid around the paper's ellipse in the plane of incidence that is as narrow across it as the lobe
 /// allows, for a lobe scaled by the joint maximum of F and G2 ([`max_reflected`](GgxLobe::max_reflected)).
 ///
@@ -120,11 +125,11 @@ pub(super) fn ellipsoids_around<N: Single>(
     );
     // The rounding of the axes to f32 tilts them by √3·1.5u at most.
     let shortest = semi_axes.y.min(semi_axes.z);
-    let tilt = semi_axes.x / shortest * (4.0 * UNIT_ROUNDOFF);
+    let tilt = semi_axes.x / shortest * (AXES_TILT_ROUNDINGS * UNIT_ROUNDOFF);
     Ellipsoids {
         parts: [Vector3::zero(radius), u * distance],
         axes: Matrix3::new(u, w.cross(u), w),
-        semi_axes: semi_axes * (tilt + 1.0).round_up(64),
+        semi_axes: semi_axes * (tilt + 1.0).round_up(SEMI_AXIS_ROUNDINGS),
     }
 }
 

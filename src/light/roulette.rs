@@ -31,6 +31,9 @@ pub struct Roulette {
 /// range, since √δ is in \[2^−74.5, 2⁶⁴\] and √ξ in \[2^−74.5, 1\].
 const LIFT: f32 = 4_294_967_296.0;
 
+/// Pays for the rounding of √(Φ/(δξ)).
+const SCALE_ROUNDINGS: u16 = 5;
+
 impl Roulette {
     /// Roulette with `delta` = δ in the unit of the shaded radiance, I over squared distance: less
     /// is less noise and more work.
@@ -91,7 +94,7 @@ impl Roulette {
 
     #[inline(always)]
     pub(crate) fn scale_in_lanes<N: Single>(&self, flux: N, xi: N) -> N {
-        let radius = self.radius_in_lanes(flux, xi).round_up(5);
+        let radius = self.radius_in_lanes(flux, xi).round_up(SCALE_ROUNDINGS);
         let normal = radius
             .max(flux.splat(f32::MIN_POSITIVE))
             .min(flux.splat(f32::MAX));

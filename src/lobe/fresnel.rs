@@ -1,9 +1,19 @@
 use crate::base::{Error, number_in};
 use crate::num::{Real, Single, round_down, round_up};
 
-/// What a maximum of F is at least said to be: less can have underflowed, and its products with other
-/// terms would be subnormal.
+/// Lower clamp for Fresnel maxima; keeps products out of the subnormal range.
 pub(super) const LEAST_REFLECTED: f32 = 1e-30;
+
+/// Pays for the rounding of the cosine of the largest half angle.
+const SMALLEST_COSINE_ROUNDINGS: u16 = 16;
+/// Pays for the rounding of a value of F.
+const REFLECTANCE_ROUNDINGS: u16 = 64;
+/// Pays for the rounding of F/(1 + rise (1 − cosθ_h)⁵).
+const MAJORANT_BASE_ROUNDINGS: u16 = 8;
+/// Pays for the product of base and rise.
+const MAJORANT_RISE_ROUNDINGS: u16 = 2;
+/// Pays for the difference 1 − F0.
+const SCHLICK_RISE_ROUNDINGS: u16 = 1;
 
 /// The share of light that a smooth interface reflects, F.
 ///
@@ -88,11 +98,11 @@ pub(super) fn quasi_convex_maximum<N: Single>(
 ) -> N {
     // Powers of smaller cosines underflow.
     let is_tiny = smallest_cosine.splat(1e-15).gt(smallest_cosine);
-    let rounded = smallest_cosine * round_down(1.0, 16);
+    let rounded = smallest_cosine * round_down(1.0, SMALLEST_COSINE_ROUNDINGS);
     let smallest_cosine = N::select(is_tiny, smallest_cosine.zero(), rounded);
     let head_on = reflectance(smallest_cosine.splat(1.0));
     let grazing = reflectance(smallest_cosine);
-    let most = grazing.max(head_on).round_up(64);
+    let most = grazing.max(head_on).round_up(REFLECTANCE_ROUNDINGS);
     most.max(most.splat(LEAST_REFLECTED)).min(most.splat(1.0))
 }
 
@@ -117,7 +127,7 @@ impl FresnelMajorant {
         let cosine = |i: usize| i as f32 / STEPS as f32;
         let rises: [f32; STEPS + 1] = core::array::from_fn(|i| (1.0 - cosine(i)).fifth_power());
         let values: [f32; STEPS + 1] =
-            core::array::from_fn(|i| round_up(reflectance(cosine(i)), 64));
+            core::array::from_fn(|i| round_up(reflectance(cosine(i)), REFLECTANCE_ROUNDINGS));
         let most = values.into_iter().fold(LEAST_REFLECTED, f32::max).min(1.0);
         let mut best = (
             f32::INFINITY,
@@ -133,7 +143,7 @@ impl FresnelMajorant {
             let base = (0..STEPS)
                 .map(|i| values[i].max(values[i + 1]).min(1.0) / shape(i + 1))
                 .fold(LEAST_REFLECTED, f32::max);
-            let base = round_up(base, 8);
+            let base = round_up(base, MAJORANT_BASE_ROUNDINGS);
             let excess: f32 = (0..=STEPS)
                 .map(|i| base * shape(i) / values[i].max(1e-3))
                 .sum();
@@ -142,7 +152,7 @@ impl FresnelMajorant {
                     excess,
                     Self {
                         base,
-                        rise: round_up(base * rise, 2),
+                        rise: round_up(base * rise, MAJORANT_RISE_ROUNDINGS),
                     },
                 );
             }
@@ -239,7 +249,7 @@ impl Fresnel for Schlick {
     fn majorant(&self) -> FresnelMajorant {
         FresnelMajorant {
             base: self.f0.max(LEAST_REFLECTED),
-            rise: round_up(1.0 - self.f0, 1),
+            rise: round_up(1.0 - self.f0, SCHLICK_RISE_ROUNDINGS),
         }
     }
 }

@@ -10,6 +10,11 @@ use super::{
 use crate::base::{Direction, mirrored};
 use crate::num::{Quad, Real, Single, UNIT_ROUNDOFF, Vector3, exact_dot};
 
+/// Pays for the rounding of the half angle's cosine at the end of a segment, in units of u.
+const END_COSINE_ROUNDINGS: f32 = 16.0;
+/// Pays for the rounding of F·G2/G1(μ).
+const MAX_REFLECTED_ROUNDINGS: u16 = 96;
+
 /// The GGX microfacet lobe for light from one direction [Tokuyoshi & Harada 2017, Eq. 6].
 ///
 /// f·max(μ_o, 0) = F(ω_i·ω_h) G2(μ, μ_o) D(ω_h·n)/(4μ), with the [`Fresnel`] factor `F` and the
@@ -331,7 +336,7 @@ impl<N: Single> GgxLobes<N> {
         let mut joint = zero;
         for [start, end_half_cosine, end_half_sine] in SEGMENTS {
             let cosine = half_cosine * end_half_cosine - half_sine * end_half_sine;
-            let cosine = (cosine - 16.0 * UNIT_ROUNDOFF).max(zero);
+            let cosine = (cosine - END_COSINE_ROUNDINGS * UNIT_ROUNDOFF).max(zero);
             let start = most.splat(start);
             let masking = G::over_four_incident_cosines_in_lanes(
                 self.incident_cosine,
@@ -344,7 +349,7 @@ impl<N: Single> GgxLobes<N> {
         }
         // Where a caller's Fresnel factor makes `most` NaN, it is passed over.
         let least = most.min(most.splat(LEAST_REFLECTED));
-        let joint = most.min(joint.round_up(96).max(least));
+        let joint = most.min(joint.round_up(MAX_REFLECTED_ROUNDINGS).max(least));
         N::select(rises, joint, most)
     }
 
