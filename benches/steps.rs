@@ -9,8 +9,8 @@ use std::hint::black_box;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Camera, Conductor, DepthInterval, Dielectric,
-    Direction, Ellipsoid, FrameSeed, Fresnel, Ggx, GgxLobe, Incidence, Interleave, LambertLobe,
-    Lobe, NoFresnel, Paper, PhongLobe, Proxy, Roulette, Schlick, Spheroid, Tight, TileGrid,
+    Direction, Ellipsoid, Fresnel, Ggx, GgxLobe, Incidence, Interleave, LambertLobe, Lobe,
+    NoFresnel, Paper, PhongLobe, Proxy, Roulette, Schlick, Seed, Spheroid, Tight, TileGrid,
     Triaxial, Vpl, Xi,
     glam::{Mat3, Vec3},
     stretch_matrix, stretch_rotation,
@@ -23,7 +23,7 @@ type Group<'a> = BenchmarkGroup<'a, criterion::measurement::WallTime>;
 
 /// The random number of `light` in `frame`, in [−1, 1].
 fn random(light: u32, frame: u32) -> f32 {
-    2.0 * FrameSeed { frame, seed: 1 }.xi(light).get() - 1.0
+    2.0 * Seed(1).frame(frame).xi(light).get() - 1.0
 }
 
 fn random_vector(light: u32, first: u32) -> Vec3 {
@@ -94,7 +94,7 @@ fn roulette() -> Roulette {
 }
 
 fn xi(light: u32) -> Xi {
-    FrameSeed { frame: 0, seed: 0 }.xi(light)
+    Seed(0).frame(0).xi(light)
 }
 
 fn spheroids() -> Vec<Spheroid> {
@@ -166,7 +166,7 @@ fn brdf(criterion: &mut Criterion) {
 fn range(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("range");
     let lights: Vec<u32> = (0..LIGHTS).collect();
-    let seed = FrameSeed { frame: 7, seed: 1 };
+    let seed = Seed(1).frame(7);
     per_item(&mut group, "hash", &lights, |light| seed.xi(*light));
     let xis: Vec<Xi> = lights.iter().map(|light| seed.xi(*light)).collect();
     let roulette = roulette();

@@ -13,7 +13,7 @@
 //! |---|---|---|
 //! | lobe | surface, incoming direction | what it reflects: [`GgxLobe`], [`LambertLobe`] and others |
 //! | light | lobe, position, flux | radiant intensity: [`Vpl`] |
-//! | range | radiant intensity, ξ | range and weight: [`Roulette`], [`Xi`], [`FrameSeed`] |
+//! | range | radiant intensity, ξ | range and weight: [`Roulette`], [`Xi`], [`Seed`] |
 //! | bound | lobe, range | shape that encloses the range: [`Ellipsoid`], [`Spheroid`], [`Sphere`] |
 //! | view | camera, image | tiles and their depths: [`Camera`], [`TileGrid`], [`DepthInterval`] |
 //! | project | bound, camera | unit sphere: [`ProjectedEllipsoid`], [`ProjectedSphere`] |
@@ -32,7 +32,7 @@
 //!
 //! ```
 //! use stochastic_light_culling::{
-//!     Camera, DepthInterval, Direction, FrameSeed, Ggx, GgxLobe, Incidence, Roulette, Schlick,
+//!     Camera, DepthInterval, Direction, Ggx, GgxLobe, Incidence, Roulette, Schlick, Seed,
 //!     TileGrid, Vpl, glam::Vec3,
 //! };
 //!
@@ -46,7 +46,7 @@
 //!
 //! // Its range in this frame, enclosed by an ellipsoid.
 //! let roulette = Roulette::new(0.01)?;
-//! let xi = FrameSeed { frame: 0, seed: 0 }.xi(0);
+//! let xi = Seed(0).frame(0).xi(0);
 //! let bound = light.bound(&roulette, xi);
 //!
 //! // The ellipsoid in camera space, projected to a unit sphere.
@@ -205,7 +205,7 @@ pub use cull::{
 };
 #[cfg(feature = "bytemuck")]
 pub use interop::{GpuEllipsoid, GpuSphere};
-pub use light::{FrameSeed, Roulette, Vpl, Xi};
+pub use light::{FrameSeed, Roulette, Seed, Vpl, Xi};
 pub use lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel,
     FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, Incidence, LambertLobe, Lobe,

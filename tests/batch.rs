@@ -4,9 +4,9 @@
 use proptest::prelude::*;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BoundStrategy, Bounded, BoxTest, Camera,
-    Conductor, ConstantLobe, DepthOrder, Dielectric, Direction, Ellipsoid, FrameSeed, Fresnel, Ggx,
-    GgxLobe, Incidence, LambertLobe, LightBatch, Lobe, MaskingShadowing, NoFresnel, OwnBound,
-    Paper, PhongLobe, Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Sphere,
+    Conductor, ConstantLobe, DepthOrder, Dielectric, Direction, Ellipsoid, Fresnel, Ggx, GgxLobe,
+    Incidence, LambertLobe, LightBatch, Lobe, MaskingShadowing, NoFresnel, OwnBound, Paper,
+    PhongLobe, Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Seed, Sphere,
     Spheroid, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 use support::generators::{self, Lit, cases, log_uniform};
@@ -397,13 +397,9 @@ fn later_frames_allocate_nothing() {
     let mut draw_frame = || {
         let builder = BatchBuilder::new(&Roulette::new(0.1).unwrap(), &camera);
         let order = order.of(lights.iter().map(Vpl::position), &camera);
-        let lights = order.iter().map(|i| {
-            (
-                *i,
-                &lights[*i as usize],
-                FrameSeed { frame: 0, seed: 0 }.xi(*i),
-            )
-        });
+        let lights = order
+            .iter()
+            .map(|i| (*i, &lights[*i as usize], Seed(0).frame(0).xi(*i)));
         batch.clear();
         builder.add(lights, &mut batch);
     };

@@ -7,9 +7,9 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, CullCounters,
-    DepthInterval, Dielectric, Direction, Error, FrameSeed, FresnelMajorant, Ggx, GgxLobe,
-    HeightCorrelated, Incidence, Interleave, LambertLobe, NoFresnel, PhongLobe, PixelRectangle,
-    Proxy, Roulette, Schlick, Separable, TileGrid, TileRectangle, Vpl, Xi,
+    DepthInterval, Dielectric, Direction, Error, FresnelMajorant, Ggx, GgxLobe, HeightCorrelated,
+    Incidence, Interleave, LambertLobe, NoFresnel, PhongLobe, PixelRectangle, Proxy, Roulette,
+    Schlick, Seed, Separable, TileGrid, TileRectangle, Vpl, Xi,
     glam::{Vec2, Vec3},
 };
 use support::generators::{self, cases, log_uniform, up_to_one};
@@ -258,7 +258,7 @@ proptest! {
         size in [64..5000_u32, 64..5000_u32],
     ) {
         comes_back(&Roulette::new(delta as f32).unwrap())?;
-        comes_back(&FrameSeed { frame: 0, seed: 0 }.xi(light))?;
+        comes_back(&Seed(0).frame(0).xi(light))?;
         comes_back(&Interleave::new(size, width).unwrap())?;
         comes_back(&TileGrid::new(size, width).unwrap())?;
     }

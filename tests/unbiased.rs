@@ -3,9 +3,8 @@
 //! Fixed seeds; an error of four standard errors has a chance of 6·10⁻⁵ per comparison.
 
 use stochastic_light_culling::{
-    Bounded, Camera, DepthInterval, Direction, FrameSeed, Ggx, GgxLobe, Incidence, Interleave,
-    PixelRectangle, ProjectedEllipsoid, Roulette, Schlick, TileGrid, TileRectangle, Vpl, Xi,
-    glam::Vec3,
+    Bounded, Camera, DepthInterval, Direction, Ggx, GgxLobe, Incidence, Interleave, PixelRectangle,
+    ProjectedEllipsoid, Roulette, Schlick, Seed, TileGrid, TileRectangle, Vpl, Xi, glam::Vec3,
 };
 use support::reference::{Brdf, Fresnel, Masking, Surface, Vector};
 
@@ -60,7 +59,7 @@ fn single_lights() {
 
                 let (mut sum, mut weights) = (0.0, 0.0);
                 for frame in 0..FRAMES {
-                    let xi = FrameSeed { frame, seed: 2026 }.xi(light);
+                    let xi = Seed(2026).frame(frame).xi(light);
                     let intensity = vpl.radiant_intensity(outgoing);
                     sum += f64::from(roulette.estimate(intensity, distance_squared, xi));
                     weights += f64::from(roulette.weight(intensity, distance_squared, xi));
@@ -92,7 +91,7 @@ impl Scene {
         let camera = Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 0.9, 1.5, 0.1..100.0).unwrap();
         let interleave = Interleave::new(IMAGE, 2).unwrap();
         let lights = (0..24_u32).map(|i| {
-            let random = |k: u32| 2.0 * FrameSeed { frame: k, seed: 99 }.xi(i).get() - 1.0;
+            let random = |k: u32| 2.0 * Seed(99).frame(k).xi(i).get() - 1.0;
             let normal = Direction::new(Vec3::new(random(0), -0.5, random(1))).unwrap();
             let slant = Vec3::new(random(2), random(3), random(4));
             let incoming = Direction::new(*normal + 0.9 * slant).unwrap();
@@ -211,7 +210,7 @@ fn a_small_image() {
         let lights: Vec<(Xi, Option<ProjectedEllipsoid>)> = (0_u32..)
             .zip(scene.lights.iter().zip(&unit_bounds))
             .map(|(i, (light, unit_bound))| {
-                let xi = FrameSeed { frame, seed: 7 }.xi(i);
+                let xi = Seed(7).frame(frame).xi(i);
                 let scale = roulette.scale(light.flux(), xi);
                 let bound = unit_bound.placed(light.position(), scale);
                 (xi, bound.project(&scene.camera))
@@ -266,15 +265,9 @@ fn hashed_numbers_are_uniform() {
     const BINS: usize = 64;
     type Draw = fn(u32) -> Xi;
     let draws: [Draw; 3] = [
-        |i| FrameSeed { frame: 0, seed: 0 }.xi(i),
-        |i| FrameSeed { frame: i, seed: 0 }.xi(0),
-        |i| {
-            FrameSeed {
-                frame: i / 317,
-                seed: 5,
-            }
-            .xi(i % 317)
-        },
+        |i| Seed(0).frame(0).xi(i),
+        |i| Seed(0).frame(i).xi(0),
+        |i| Seed(5).frame(i / 317).xi(i % 317),
     ];
     for draw in draws {
         let mut bins = [0.0; BINS];
@@ -327,14 +320,14 @@ fn hashed_numbers_show_no_lattice() {
     ] {
         for lag in [1, 2, 3, 8] {
             for frame in [0, 1, 634_785_765, seed] {
-                let along_lights = |light| FrameSeed { frame, seed }.xi(light);
+                let along_lights = |light| Seed(seed).frame(frame).xi(light);
                 assert!(
                     even(&along_lights, lag),
                     "seed {seed}, frame {frame}, lag {lag}"
                 );
             }
             for light in [0, 1, 1000] {
-                let along_frames = |frame| FrameSeed { frame, seed }.xi(light);
+                let along_frames = |frame| Seed(seed).frame(frame).xi(light);
                 assert!(
                     even(&along_frames, lag),
                     "seed {seed}, light {light}, lag {lag}"
@@ -343,7 +336,7 @@ fn hashed_numbers_show_no_lattice() {
         }
     }
     for light in [0, 1, 1000] {
-        let equal = |frame| FrameSeed { frame, seed: frame }.xi(light);
+        let equal = |frame| Seed(frame).frame(frame).xi(light);
         assert!(even(&equal, 1), "light {light}");
     }
 }

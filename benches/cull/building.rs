@@ -4,23 +4,23 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, measurement::WallTime};
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, Camera, DepthOrder, Direction, FrameSeed,
-    Fresnel, Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, Lobe, NoFresnel, Paper, Projected,
-    Roulette, Schlick, Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, Camera, DepthOrder, Direction, Fresnel, Ggx,
+    GgxLobe, Incidence, LambertLobe, LightBatch, Lobe, NoFresnel, Paper, Projected, Roulette,
+    Schlick, Seed, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 use support::workload;
 
 /// Lights in a ball in front of the camera.
 fn lights<L: Lobe>(lobe: impl Fn(u32, Incidence) -> L) -> Vec<(Vpl<L>, Xi)> {
     let light = |i| {
-        let random = |frame| 2.0 * FrameSeed { frame, seed: 1 }.xi(i).get() - 1.0;
+        let random = |frame| 2.0 * Seed(1).frame(frame).xi(i).get() - 1.0;
         let vector = |k| Vec3::new(random(k), random(k + 1), random(k + 2));
         let normal = Direction::new(vector(0)).expect("not zero");
         let incoming = Direction::new(*normal + 0.9 * vector(3)).expect("not zero");
         let lobe = lobe(i, Incidence { normal, incoming });
         let position = 10.0 * vector(6) - 25.0 * Vec3::Z;
         let light = Vpl::new(position, 1.0, lobe).expect("in range");
-        (light, FrameSeed { frame: 0, seed: 0 }.xi(i))
+        (light, Seed(0).frame(0).xi(i))
     };
     (0..workload::LIGHTS as u32).map(light).collect()
 }

@@ -4,7 +4,7 @@
 use std::f32::consts::{PI, TAU};
 
 use stochastic_light_culling::{
-    Camera, DepthInterval, Ellipsoid, FrameSeed, LightBatch, ProjectedEllipsoid, TileDepths,
+    Camera, DepthInterval, Ellipsoid, LightBatch, ProjectedEllipsoid, Seed, TileDepths,
     TileRectangle,
     glam::{Mat3, Vec2, Vec3},
 };
@@ -40,7 +40,7 @@ fn lights(scale: u32, slopes: Vec2, camera: &Camera) -> LightBatch<ProjectedElli
 }
 
 fn ellipsoid(light: u32, scale: u32, slopes: Vec2) -> Ellipsoid {
-    let unit = |frame| FrameSeed { frame, seed: 3 }.xi(light).get();
+    let unit = |frame| Seed(3).frame(frame).xi(light).get();
     let depth = (1.0 + unit(0) * (50_f32.powi(3) - 1.0)).cbrt();
     let across = Vec2::new(2.0 * unit(1) - 1.0, 2.0 * unit(2) - 1.0) * slopes * depth;
     let short = 0.15 * 20_f32.powf(unit(3)) / (scale as f32).powf(0.55);
@@ -70,7 +70,7 @@ fn tiles(scale: u32, slopes: Vec2) -> TileDepths {
     let mut tiles = TileDepths::from_rectangles(size, 2, rectangle).expect("not empty");
     for y in 0..size[1] {
         for x in 0..size[0] {
-            let unit = |seed| FrameSeed { frame: y, seed }.xi(x).get();
+            let unit = |seed| Seed(seed).frame(y).xi(x).get();
             let (tx, ty) = (x as f32 / scale as f32, y as f32 / scale as f32);
             let waves = 0.3 * (0.45 * tx + 0.3).sin() * (0.6 * ty).cos();
             let f = 0.5 + waves + 0.15 * (0.9 * tx - 0.7 * ty).sin();

@@ -2,7 +2,7 @@
 
 use stochastic_light_culling::{
     BatchBuilder, Bounded, Camera, CullCounters, Culler, DepthInterval, DepthOrder, Ellipsoid,
-    Error, FrameSeed, GgxLobe, LightBatch, LightLists, ProjectedEllipsoid, Roulette, Schlick,
+    Error, GgxLobe, LightBatch, LightLists, ProjectedEllipsoid, Roulette, Schlick, Seed,
     TileDepths, TileGrid, Vpl, Xi,
 };
 
@@ -119,5 +119,5 @@ fn with_bound(light: Light) -> (Light, Ellipsoid) {
 
 /// Each light's, new in each frame, for culling and for shading.
 fn xi(light: u32, frame: u32) -> Xi {
-    FrameSeed { frame, seed: SEED }.xi(light)
+    Seed(SEED).frame(frame).xi(light)
 }

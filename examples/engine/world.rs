@@ -3,7 +3,7 @@
 // glam before 0.33 has these matrices as `Mat4::look_at_rh`, `Mat4::perspective_infinite_reverse_rh` and
 // so on.
 use stochastic_light_culling::{
-    Camera, Direction, Error, FrameSeed, Ggx, GgxLobe, Incidence, Schlick, Vpl,
+    Camera, Direction, Error, Ggx, GgxLobe, Incidence, Schlick, Seed, Vpl,
     glam::{
         Vec3,
         camera::{lh, rh},
@@ -81,7 +81,7 @@ pub fn lights(count: u32, alpha: f32) -> Result<Vec<Vpl<GgxLobe<Schlick>>>, Erro
     let (ggx, gold) = (Ggx::new(alpha)?, Schlick::new(0.9)?);
     let lamp = Vec3::new(0.0, 6.0, -4.0);
     let light = |i| {
-        let random = |frame| FrameSeed { frame, seed: 99 }.xi(i).get();
+        let random = |frame| Seed(99).frame(frame).xi(i).get();
         let [x, z] = [1, 2].map(|frame| random(frame) - 0.5);
         let position = Vec3::new(20.0 * x, 0.0, 20.0 * z);
         let incidence = Incidence {

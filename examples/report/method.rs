@@ -1,7 +1,7 @@
 //! Ways to light a frame by its glossy lights.
 
 use common::frame::{BoundKind, Frame, GlossyLight, Slicing, Tiles, Tiling, measure_glossy, timed};
-use stochastic_light_culling::{FrameSeed, Interleave, Xi, glam::Vec3};
+use stochastic_light_culling::{Interleave, Seed, Xi, glam::Vec3};
 
 use crate::baseline::{cluster, splat};
 use crate::figure::{Line, Look};
@@ -131,7 +131,7 @@ impl<'a> Stage<'a> {
         let seed = self.subject.seed;
         let again = |frame| {
             let drawn = |(light, i): (&GlossyLight, u32)| GlossyLight {
-                xi: FrameSeed { frame, seed }.xi(i),
+                xi: Seed(seed).frame(frame).xi(i),
                 ..*light
             };
             lights.iter().zip(0..).map(drawn).collect()

@@ -103,7 +103,7 @@ impl Reach {
 ///
 /// ```
 /// use stochastic_light_culling::{
-///     BatchBuilder, Bounded, FrameSeed, LightBatch, Project, ProjectedBound, Vpl,
+///     BatchBuilder, Bounded, Seed, LightBatch, Project, ProjectedBound, Vpl,
 /// };
 ///
 /// /// For lights that are new in each frame.
@@ -112,7 +112,7 @@ impl Reach {
 ///     builder: &BatchBuilder,
 /// ) -> LightBatch<ProjectedBound<L>> {
 ///     let mut batch = LightBatch::new();
-///     let seed = FrameSeed { frame: 0, seed: 0 };
+///     let seed = Seed(0).frame(0);
 ///     let with_xi = (0..).zip(lights).map(|(i, light)| (i, light, seed.xi(i)));
 ///     builder.add(with_xi, &mut batch);
 ///     batch

@@ -21,7 +21,7 @@ use crate::view::Camera;
 ///
 /// ```
 /// use stochastic_light_culling::{
-///     BatchBuilder, Camera, Direction, FrameSeed, Ggx, GgxLobe, Incidence, LightBatch, NoFresnel,
+///     BatchBuilder, Camera, Direction, Seed, Ggx, GgxLobe, Incidence, LightBatch, NoFresnel,
 ///     Paper, Roulette, Vpl, glam::Vec3,
 /// };
 ///
@@ -31,7 +31,7 @@ use crate::view::Camera;
 ///
 /// let roulette = Roulette::new(0.01)?;
 /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
-/// let seed = FrameSeed { frame: 7, seed: 0 };
+/// let seed = Seed(0).frame(7);
 /// let builder = BatchBuilder::new(&roulette, &camera);
 /// let with_xi = || (0..).zip(&lights).map(|(i, light)| (i, light, seed.xi(i)));
 ///

@@ -7,4 +7,4 @@ mod xi;
 
 pub use roulette::Roulette;
 pub use vpl::Vpl;
-pub use xi::{FrameSeed, Xi};
+pub use xi::{FrameSeed, Seed, Xi};

@@ -23,40 +23,52 @@ impl Xi {
     }
 }
 
-/// Which frame of which sequence of random numbers: gives each light its ξ, with no state to keep.
+/// A sequence of random numbers: another seed gives other numbers for all frames.
 ///
 /// ```
-/// use stochastic_light_culling::FrameSeed;
+/// use stochastic_light_culling::Seed;
 ///
-/// let first = FrameSeed { frame: 0, seed: 1 };
-/// let second = FrameSeed { frame: 1, seed: 1 };
-/// assert_eq!(first.xi(7), first.xi(7));
-/// assert_ne!(first.xi(7), second.xi(7));
+/// let [first, second] = [0, 1].map(|frame| Seed(7).frame(frame));
+/// assert_eq!(first.xi(41), first.xi(41));
+/// assert_ne!(first.xi(41), second.xi(41));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Seed(pub u32);
+
+/// A frame of a [`Seed`]'s sequence: gives each light its ξ, with no state to keep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FrameSeed {
-    /// The frame.
-    pub frame: u32,
-    /// The sequence: another seed gives other numbers for all frames.
-    pub seed: u32,
+    /// Hashed frame and seed, both odd: a product with an even number loses bits, and with zero all of them.
+    key: [u32; 2],
+}
+
+impl Seed {
+    /// The random numbers of the frame with this index.
+    #[inline]
+    #[must_use]
+    pub fn frame(self, frame: u32) -> FrameSeed {
+        // Any third word that is not small.
+        let [first, second] = stirred(
+            congruential(frame),
+            congruential(self.0),
+            congruential(0x9E37_79B9),
+        );
+        FrameSeed {
+            key: [first | 1, second | 1],
+        }
+    }
 }
 
 impl FrameSeed {
     /// The ξ of the light with the index `light`: the same each time.
     ///
-    /// A multiple of 2⁻³², rounded to `f32`, from the hash of [Jarzynski & Olano 2020, "pcg3d"]: twice, since
-    /// a single one shows a lattice for some seeds, and where frame and seed are equal.
+    /// A multiple of 2⁻³², rounded to `f32`, from the hash of [Jarzynski & Olano 2020, "pcg3d"]. Frame and
+    /// seed are hashed before, since otherwise some seeds show a lattice, and so do equal frames and seeds.
     #[inline]
     #[must_use]
     pub fn xi(self, light: u32) -> Xi {
-        // Any third word that is not small.
-        let [first, second] = stirred(
-            congruential(self.frame),
-            congruential(self.seed),
-            congruential(0x9E37_79B9),
-        );
-        // Odd numbers: a product with an even one loses bits, and with zero all of them.
-        let [bits, _] = stirred(congruential(light), first | 1, second | 1);
+        let [first, second] = self.key;
+        let [bits, _] = stirred(congruential(light), first, second);
         // The sum takes 33 bits; its conversion rounds once, and the power of two is exact.
         Xi((u64::from(bits) + 1) as f32 * (1.0 / 4_294_967_296.0))
     }

@@ -5,9 +5,9 @@ use std::hint::black_box;
 use fastrand::Rng;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Camera, Conductor, ConstantLobe, DepthInterval,
-    Dielectric, Direction, Ellipsoid, FrameSeed, Fresnel, FresnelMajorant, Ggx, GgxLobe, Incidence,
+    Dielectric, Direction, Ellipsoid, Fresnel, FresnelMajorant, Ggx, GgxLobe, Incidence,
     Interleave, LambertLobe, Lobe, NoFresnel, Paper, PhongLobe, PixelRectangle, Proxy, Roulette,
-    Schlick, Sphere, Tight, TileGrid, TileRectangle, Triaxial, Vpl, Xi,
+    Schlick, Seed, Sphere, Tight, TileGrid, TileRectangle, Triaxial, Vpl, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
 use support::adversary::{Light, Tile};
@@ -149,11 +149,7 @@ fn others(bits: &mut Bits, cameras: &[Camera]) {
         probe::roulette(&roulette, xi);
         probe::roulette(
             &roulette,
-            FrameSeed {
-                frame: bits.word(),
-                seed: bits.word(),
-            }
-            .xi(bits.word()),
+            Seed(bits.word()).frame(bits.word()).xi(bits.word()),
         );
     }
     if let Ok(light) = Vpl::new(bits.vector(), bits.number(), ConstantLobe) {

@@ -5,8 +5,8 @@ use std::fmt::Debug;
 
 use stochastic_light_culling::{
     BatchBuilder, Bounded, BoxTest, Camera, Culler, DepthInterval, DepthOrder, Direction,
-    Ellipsoid, FrameSeed, Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, NoFresnel,
-    Project, Roulette, Sphere, TileDepths, TileGrid, TileRectangle, Vpl, Xi, glam::Mat3,
+    Ellipsoid, Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, NoFresnel, Project,
+    Roulette, Seed, Sphere, TileDepths, TileGrid, TileRectangle, Vpl, Xi, glam::Mat3,
 };
 
 use crate::bits::Bits;
@@ -133,7 +133,7 @@ impl<'a> Grid<'a> {
         L: Bounded<Shape: Project<Projected: BoxTest + PartialEq + Debug>> + Copy + 'static,
     {
         let (roulette, xi) = (roulette(bits), Xi::new(bits.number()));
-        let xi = xi.unwrap_or(FrameSeed { frame: 2, seed: 3 }.xi(1));
+        let xi = xi.unwrap_or(Seed(3).frame(2).xi(1));
         let places = PLACES.into_iter();
         let lights: Vec<_> = places
             .flat_map(|place| [0.0, 1e-45, 1.0, f32::MAX].map(|flux| (place, flux)))

@@ -1,6 +1,6 @@
 //! From a lobe to the tiles that it touches.
 
-use stochastic_light_culling::{FrameSeed, Incidence, 
+use stochastic_light_culling::{Seed, Incidence, 
     Camera, Conductor, DepthInterval, Direction, Error, Ggx, GgxLobe, Roulette, ProjectedEllipsoid, TileGrid,
     Vpl, glam::Vec3,
 };
@@ -26,7 +26,7 @@ pub fn stretch(light: u32) -> Result<Option<ProjectedEllipsoid>, Error> {
     let gold = Conductor::new(0.16, 3.5)?;
     let lobe = GgxLobe::new(Ggx::new(0.1)?, gold, Incidence { normal: Direction::Y, incoming });
     let light_there = Vpl::new(Vec3::ZERO, 2.0, lobe)?;
-    let bound = light_there.bound(&Roulette::new(0.01)?, FrameSeed { frame: 0, seed: 0 }.xi(light));
+    let bound = light_there.bound(&Roulette::new(0.01)?, Seed(0).frame(0).xi(light));
     Ok(bound.project(&camera()?))
 }
 

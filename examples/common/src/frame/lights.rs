@@ -1,8 +1,7 @@
 //! The lights of a frame: lit points with their share of the flux and their ξ.
 
 use stochastic_light_culling::{
-    Direction, Error, FrameSeed, GgxLobe, Interleave, LambertLobe, Lobe, Schlick, Vpl, Xi,
-    glam::Vec3,
+    Direction, Error, GgxLobe, Interleave, LambertLobe, Lobe, Schlick, Seed, Vpl, Xi, glam::Vec3,
 };
 
 use crate::scene::{LitPoint, LitPoints, Surface};
@@ -61,7 +60,7 @@ fn lights<L: Lobe + Copy>(
             } else {
                 Vec3::ZERO
             },
-            xi: FrameSeed { frame: 0, seed }.xi(i),
+            xi: Seed(seed).frame(0).xi(i),
         })
     };
     (first..).zip(points).map(light).collect()

@@ -1,6 +1,6 @@
 //! Random numbers without state: each is a hash of what it is for.
 
-use stochastic_light_culling::FrameSeed;
+use stochastic_light_culling::Seed;
 
 /// What a number is drawn for. The library's own ξ take the hash's second word to be a frame number;
 /// these come from frames that no picture will reach.
@@ -15,5 +15,5 @@ pub enum Purpose {
 /// A number in (0, 1] for the thing `index`.
 pub fn uniform(index: u32, purpose: Purpose, seed: u32) -> f32 {
     let frame = purpose as u32;
-    FrameSeed { frame, seed }.xi(index).get()
+    Seed(seed).frame(frame).xi(index).get()
 }

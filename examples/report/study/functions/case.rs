@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use stochastic_light_culling::{Direction, FrameSeed, Ggx, GgxLobe, Incidence, glam::Vec3};
+use stochastic_light_culling::{Direction, Ggx, GgxLobe, Incidence, Seed, glam::Vec3};
 use support::reference::{Brdf, Fresnel, Masking, Surface, Vector, smith_g1};
 
 /// What the functions are given.
@@ -19,7 +19,7 @@ pub struct Case {
 impl Case {
     /// With a roughness from 0.01 to 1, and both directions a degree above the surface or more.
     pub fn new(index: u32) -> Self {
-        let random = |frame| 2.0 * FrameSeed { frame, seed: 1 }.xi(index).get() - 1.0;
+        let random = |frame| 2.0 * Seed(1).frame(frame).xi(index).get() - 1.0;
         let vector = |first| Vec3::new(random(first), random(first + 1), random(first + 2));
         let direction = |vector| Direction::new(vector).expect("random vectors are not zero");
         let normal = direction(vector(0));

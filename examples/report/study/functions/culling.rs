@@ -1,8 +1,8 @@
 //! Bounds, stretches and tests of tiles.
 
 use stochastic_light_culling::{
-    Bounded, Camera, DepthInterval, Ellipsoid, FrameSeed, GgxLobe, Paper, ProjectedEllipsoid,
-    Roulette, Schlick, Sphere, Tight, TileGrid, Triaxial, glam::Vec3,
+    Bounded, Camera, DepthInterval, Ellipsoid, GgxLobe, Paper, ProjectedEllipsoid, Roulette,
+    Schlick, Seed, Sphere, Tight, TileGrid, Triaxial, glam::Vec3,
 };
 use support::reference::{Fresnel, Frustum, Shape, Vector};
 
@@ -36,7 +36,7 @@ pub fn bounds(bench: &mut Bench) {
         |lobe| lobe.unit_bound_by(Paper),
         |case, spheroid| off(spheroid.radius(), exact(case)),
     );
-    let seed = FrameSeed { frame: 0, seed: 2 };
+    let seed = Seed(2).frame(0);
     bench.add(
         (kind, "scale r, roulette"),
         |case| seed.xi(case.index),
@@ -113,7 +113,7 @@ pub fn tests(bench: &mut Bench) {
     let camera = camera();
     let grid = TileGrid::new([640, 360], 16).expect("not empty");
     let tile = move |case: &Case| {
-        let random = |frame| FrameSeed { frame, seed: 3 }.xi(case.index).get();
+        let random = |frame| Seed(3).frame(frame).xi(case.index).get();
         let [x, y] = [random(1) * 39.0, random(2) * 21.0];
         let near = 10.0 + 25.0 * random(3);
         (
