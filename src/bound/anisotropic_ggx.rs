@@ -52,7 +52,6 @@
 use super::ellipsoid::Ellipsoids;
 use super::principal_axes::principal_axes;
 use super::shape::{MAX_QUADS, Quads};
-use super::strategy::single_unit_bound;
 use super::triaxial::{ellipsoids_around, ndf_radius_squared};
 use super::{BoundStrategy, Bounded, Ellipsoid, Triaxial};
 use crate::lobe::{AnisotropicGgxLobe, Fresnel, GgxLobes, MaskingShadowing, SurfaceAxes};
@@ -71,13 +70,6 @@ const SEMI_AXIS_ROUNDINGS: u16 = 24;
 /// rounding, and the triaxial bound of a [`GgxLobe`](crate::GgxLobe) for α_x = α_y.
 impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<AnisotropicGgxLobe<F, G>> for Triaxial {
     type Shape = Ellipsoid;
-
-    fn unit_bound(&self, lobe: &AnisotropicGgxLobe<F, G>) -> Ellipsoid {
-        if lobe.incident_cosine() <= 0.0 {
-            return Ellipsoid::EMPTY;
-        }
-        single_unit_bound(*self, lobe)
-    }
 
     type PerLight = F;
 

@@ -35,13 +35,6 @@ pub struct Ellipsoid {
 }
 
 impl Ellipsoid {
-    pub(super) const EMPTY: Self = Self {
-        light: Vec3::ZERO,
-        offset: Vec3::ZERO,
-        rotation: Mat3::IDENTITY,
-        semi_axes: Vec3::ZERO,
-    };
-
     /// The ellipsoid around `center` whose axes are the columns of `rotation`.
     ///
     /// # Errors
@@ -190,6 +183,13 @@ impl Shape for Ellipsoid {
     fn is_empty(&self) -> bool {
         self.is_empty()
     }
+
+    const EMPTY: Self = Self {
+        light: Vec3::ZERO,
+        offset: Vec3::ZERO,
+        rotation: Mat3::IDENTITY,
+        semi_axes: Vec3::ZERO,
+    };
 
     type Lanes<N: Single> = Ellipsoids<N>;
 

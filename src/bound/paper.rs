@@ -4,8 +4,7 @@ use core::f32::consts::FRAC_1_PI;
 
 use super::shape::{MAX_QUADS, Quads};
 use super::spheroid::Spheroids;
-use super::strategy::single_unit_bound;
-use super::{BoundStrategy, Paper, Spheroid};
+use super::{BoundStrategy, Paper, Shape, Spheroid};
 use crate::lobe::{Fresnel, GgxLobe, GgxLobes, MaskingShadowing};
 use crate::num::{Single, UNIT_ROUNDOFF};
 
@@ -22,8 +21,11 @@ const AXIS_TILT_RADIANS: f32 = 0.87 * UNIT_ROUNDOFF;
 impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<GgxLobe<F, G>> for Paper {
     type Shape = Spheroid;
 
+    // Of an empty lobe too, since an empty spheroid keeps its axis.
     fn unit_bound(&self, lobe: &GgxLobe<F, G>) -> Spheroid {
-        single_unit_bound(*self, lobe)
+        let (quads, fresnel) = BoundStrategy::<GgxLobe<F, G>>::to_quads(self, lobe);
+        let lanes = BoundStrategy::<GgxLobe<F, G>>::unit_bounds(self, &quads, &[fresnel]);
+        Spheroid::from_lanes(lanes)
     }
 
     type PerLight = F;

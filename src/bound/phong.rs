@@ -1,7 +1,6 @@
 use super::cosine_power::Revolved;
 use super::ellipsoid::Ellipsoids;
 use super::shape::{MAX_QUADS, Quads};
-use super::strategy::single_unit_bound;
 use super::{BoundStrategy, Bounded, Ellipsoid, Tight};
 use crate::lobe::PhongLobe;
 use crate::num::{Single, Vector3};
@@ -15,13 +14,6 @@ use crate::num::{Single, Vector3};
 /// part of the lobe that the horizon cuts off is enclosed too.
 impl BoundStrategy<PhongLobe> for Tight {
     type Shape = Ellipsoid;
-
-    fn unit_bound(&self, lobe: &PhongLobe) -> Ellipsoid {
-        if lobe.unit_reach() <= 0.0 {
-            return Ellipsoid::EMPTY;
-        }
-        single_unit_bound(*self, lobe)
-    }
 
     type PerLight = ();
 

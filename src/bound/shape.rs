@@ -24,6 +24,9 @@ pub trait Shape: Copy + 'static {
     /// Whether nothing lies inside: the light reaches nowhere.
     fn is_empty(&self) -> bool;
 
+    #[doc(hidden)]
+    const EMPTY: Self;
+
     /// One shape in each lane.
     #[doc(hidden)]
     type Lanes<N: Single>: ShapeLanes<N>;

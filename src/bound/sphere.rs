@@ -108,6 +108,11 @@ impl Shape for Sphere {
         self.is_empty()
     }
 
+    const EMPTY: Self = Self {
+        center: Vec3::ZERO,
+        radius: 0.0,
+    };
+
     type Lanes<N: Single> = Spheres<N>;
 
     const QUADS: usize = 1;

@@ -246,6 +246,13 @@ impl Shape for Spheroid {
         self.is_empty()
     }
 
+    const EMPTY: Self = Self {
+        focus: Vec3::ZERO,
+        axis: Direction::X,
+        radius: 0.0,
+        roughness: 1.0,
+    };
+
     type Lanes<N: Single> = Spheroids<N>;
 
     const QUADS: usize = 2;

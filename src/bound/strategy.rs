@@ -31,7 +31,14 @@ pub trait BoundStrategy<L: Lobe>: Copy {
 
     /// A shape that contains the unit isosurface {√value(ω)·ω : ω a unit vector} of `lobe`, for a light at
     /// the origin.
-    fn unit_bound(&self, lobe: &L) -> Self::Shape;
+    #[inline]
+    fn unit_bound(&self, lobe: &L) -> Self::Shape {
+        if lobe.is_empty() {
+            return Self::Shape::EMPTY;
+        }
+        let (quads, per_light) = self.to_quads(lobe);
+        Self::Shape::from_lanes(self.unit_bounds::<f32>(&quads, &[per_light]))
+    }
 
     /// What a lobe has besides numbers.
     #[doc(hidden)]
@@ -51,13 +58,6 @@ pub trait BoundStrategy<L: Lobe>: Copy {
         quads: &Quads<N>,
         per_light: &[Self::PerLight],
     ) -> <Self::Shape as Shape>::Lanes<N>;
-}
-
-/// The one-lane case of [`BoundStrategy::unit_bounds`].
-#[inline(always)]
-pub(super) fn single_unit_bound<L: Lobe, B: BoundStrategy<L>>(strategy: B, lobe: &L) -> B::Shape {
-    let (quads, per_light) = strategy.to_quads(lobe);
-    B::Shape::from_lanes(strategy.unit_bounds::<f32>(&quads, &[per_light]))
 }
 
 /// A lobe whose isosurface has a closed bound.

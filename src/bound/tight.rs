@@ -63,7 +63,6 @@ use glam::Vec4;
 
 use super::ellipsoid::Ellipsoids;
 use super::shape::{MAX_QUADS, Quads};
-use super::strategy::single_unit_bound;
 use super::table::{self, Axis, INCIDENCES, KNOTS, REFLECTANCES, TABLE};
 use super::{BoundStrategy, Bounded, Ellipsoid, Tight, Triaxial};
 use crate::lobe::{
@@ -90,13 +89,6 @@ const SEMI_AXIS_ROUNDINGS: u16 = 96;
 /// dielectrics; never above that of the paper's [`Spheroid`](crate::Spheroid) but for rounding.
 impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<GgxLobe<F, G>> for Tight {
     type Shape = Ellipsoid;
-
-    fn unit_bound(&self, lobe: &GgxLobe<F, G>) -> Ellipsoid {
-        if lobe.incident_cosine() <= 0.0 {
-            return Ellipsoid::EMPTY;
-        }
-        single_unit_bound(*self, lobe)
-    }
 
     type PerLight = F;
 

@@ -51,7 +51,6 @@ use core::f32::consts::FRAC_1_PI;
 
 use super::ellipsoid::Ellipsoids;
 use super::shape::{MAX_QUADS, Quads};
-use super::strategy::single_unit_bound;
 use super::{BoundStrategy, Ellipsoid, Triaxial};
 use crate::lobe::{Fresnel, GgxLobe, GgxLobes, MaskingShadowing};
 use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3};
@@ -69,13 +68,6 @@ const SEMI_AXIS_ROUNDINGS: u16 = 64;
 /// large at normal incidence and a fraction of it at grazing, for dielectrics a fraction throughout.
 impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<GgxLobe<F, G>> for Triaxial {
     type Shape = Ellipsoid;
-
-    fn unit_bound(&self, lobe: &GgxLobe<F, G>) -> Ellipsoid {
-        if lobe.incident_cosine() <= 0.0 {
-            return Ellipsoid::EMPTY;
-        }
-        single_unit_bound(*self, lobe)
-    }
 
     type PerLight = F;
 

@@ -1,5 +1,4 @@
 use super::dielectric::index_squared_less_sine_squared;
-use super::fresnel::quasi_convex_maximum;
 use super::{Fresnel, FresnelMajorant};
 use crate::base::{Error, number_in};
 use crate::num::Single;
@@ -54,6 +53,8 @@ impl Conductor {
 }
 
 impl Fresnel for Conductor {
+    const IS_IN_LANES: bool = true;
+
     #[inline]
     fn reflectance(&self, half_angle_cosine: f32) -> f32 {
         reflectance(self.index, self.extinction, half_angle_cosine)
@@ -75,15 +76,6 @@ impl Fresnel for Conductor {
             |i| fresnels[i].extinction,
         );
         reflectance(index, extinction, half_angle_cosine)
-    }
-
-    #[inline(always)]
-    fn maximum_in_lanes<N: Single>(fresnels: &[Self], smallest_cosine: N) -> N {
-        quasi_convex_maximum(
-            #[inline(always)]
-            |cosine| Self::reflectance_in_lanes(fresnels, cosine),
-            smallest_cosine,
-        )
     }
 }
 

@@ -1,4 +1,3 @@
-use super::fresnel::quasi_convex_maximum;
 use super::{Fresnel, FresnelMajorant};
 use crate::base::{Error, number_in};
 use crate::num::Single;
@@ -47,6 +46,8 @@ impl Dielectric {
 }
 
 impl Fresnel for Dielectric {
+    const IS_IN_LANES: bool = true;
+
     #[inline]
     fn reflectance(&self, half_angle_cosine: f32) -> f32 {
         reflectance(self.relative_index, half_angle_cosine)
@@ -64,15 +65,6 @@ impl Fresnel for Dielectric {
             |i| fresnels[i].relative_index,
         );
         reflectance(index, half_angle_cosine)
-    }
-
-    #[inline(always)]
-    fn maximum_in_lanes<N: Single>(fresnels: &[Self], smallest_cosine: N) -> N {
-        quasi_convex_maximum(
-            #[inline(always)]
-            |cosine| Self::reflectance_in_lanes(fresnels, cosine),
-            smallest_cosine,
-        )
     }
 }
 

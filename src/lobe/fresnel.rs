@@ -67,6 +67,10 @@ pub trait Fresnel: Copy + 'static {
         }
     }
 
+    /// Whether `reflectance_in_lanes` is implemented, and `maximum` is not.
+    #[doc(hidden)]
+    const IS_IN_LANES: bool = false;
+
     /// [`reflectance`](Self::reflectance) of one factor in each lane.
     #[doc(hidden)]
     #[inline(always)]
@@ -82,6 +86,13 @@ pub trait Fresnel: Copy + 'static {
     #[doc(hidden)]
     #[inline(always)]
     fn maximum_in_lanes<N: Single>(fresnels: &[Self], smallest_cosine: N) -> N {
+        if Self::IS_IN_LANES {
+            return quasi_convex_maximum(
+                #[inline(always)]
+                |cosine| Self::reflectance_in_lanes(fresnels, cosine),
+                smallest_cosine,
+            );
+        }
         N::per_lane(
             [smallest_cosine],
             #[inline(always)]
@@ -92,10 +103,7 @@ pub trait Fresnel: Copy + 'static {
 
 /// An upper bound of a quasi-convex F: see [`Fresnel::maximum`].
 #[inline(always)]
-pub(super) fn quasi_convex_maximum<N: Single>(
-    reflectance: impl Fn(N) -> N,
-    smallest_cosine: N,
-) -> N {
+fn quasi_convex_maximum<N: Single>(reflectance: impl Fn(N) -> N, smallest_cosine: N) -> N {
     // Powers of smaller cosines underflow.
     let is_tiny = smallest_cosine.splat(1e-15).gt(smallest_cosine);
     let rounded = smallest_cosine * round_down(1.0, SMALLEST_COSINE_ROUNDINGS);
@@ -222,6 +230,8 @@ impl Schlick {
 }
 
 impl Fresnel for Schlick {
+    const IS_IN_LANES: bool = true;
+
     #[inline]
     fn reflectance(&self, half_angle_cosine: f32) -> f32 {
         Self::reflectance_in_lanes(&[*self], half_angle_cosine)
@@ -234,15 +244,6 @@ impl Fresnel for Schlick {
             |i| fresnels[i].f0,
         );
         f0 + f0.one_minus() * half_angle_cosine.one_minus().fifth_power()
-    }
-
-    #[inline(always)]
-    fn maximum_in_lanes<N: Single>(fresnels: &[Self], smallest_cosine: N) -> N {
-        quasi_convex_maximum(
-            #[inline(always)]
-            |cosine| Self::reflectance_in_lanes(fresnels, cosine),
-            smallest_cosine,
-        )
     }
 
     #[inline]

@@ -62,6 +62,10 @@ impl Lobe for LambertLobe {
         lambert(self.albedo, self.normal.into(), outgoing.into())
     }
 
+    fn is_empty(&self) -> bool {
+        self.albedo <= 0.0
+    }
+
     fn horizon_normal(&self) -> Option<Direction> {
         Some(self.normal)
     }

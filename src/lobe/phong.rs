@@ -142,7 +142,7 @@ impl Lobe for PhongLobe {
     }
 
     fn is_empty(&self) -> bool {
-        !self.is_lit
+        !self.is_lit || self.albedo <= 0.0
     }
 }
 
