@@ -1,13 +1,13 @@
 use crate::base::{Error, number_in};
 
-/// A light's random number ξ in (0, 1] for one frame, shared by all points that it may light.
+/// The random number ξ in (0, 1] of a light in one frame, shared by all points that the light may reach.
 ///
-/// Zero is left out, since it would let the light reach infinitely far.
+/// Zero is excluded, since the light would reach infinitely far.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Xi(f32);
 
 impl Xi {
-    /// A random number of the caller's own.
+    /// Wraps a random number of the caller's own.
     ///
     /// # Errors
     ///
@@ -16,14 +16,14 @@ impl Xi {
         number_in("random number ξ", xi, "in (0, 1]", f32::from_bits(1)..=1.0).map(Self)
     }
 
-    /// ξ.
+    /// The number ξ.
     #[must_use]
     pub fn get(self) -> f32 {
         self.0
     }
 }
 
-/// Which frame of which sequence of random numbers: gives each light its ξ, with no state to keep.
+/// A frame of a sequence of random numbers. It gives each light its ξ, without any state.
 ///
 /// ```
 /// use stochastic_light_culling::FrameSeed;
@@ -35,40 +35,40 @@ impl Xi {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct FrameSeed {
-    /// The frame.
+    /// The index of the frame.
     pub frame: u32,
-    /// The sequence: another seed gives other numbers for all frames.
+    /// The seed of the sequence: another seed gives other numbers for all frames.
     pub seed: u32,
 }
 
 impl FrameSeed {
-    /// The ξ of the light with the index `light`: the same each time.
+    /// The ξ of the light with the index `light`, the same in each call.
     ///
-    /// A multiple of 2⁻³², rounded to `f32`, from the hash of [Jarzynski & Olano 2020, "pcg3d"]: twice, since
-    /// a single one shows a lattice for some seeds, and where frame and seed are equal.
+    /// It is a multiple of 2⁻³², rounded to `f32`, and comes from the hash pcg3d of [Jarzynski & Olano 2020],
+    /// applied twice. A single hash shows a lattice for some seeds, and where frame and seed are equal.
     #[inline]
     #[must_use]
     pub fn xi(self, light: u32) -> Xi {
-        // Any third word that is not small.
+        // The third word is arbitrary, but not small.
         let [first, second] = stirred(
             congruential(self.frame),
             congruential(self.seed),
             congruential(0x9E37_79B9),
         );
-        // Odd numbers: a product with an even one loses bits, and with zero all of them.
+        // Made odd: a product with an even number loses bits, and with zero all of them.
         let [bits, _] = stirred(congruential(light), first | 1, second | 1);
-        // The sum takes 33 bits; its conversion rounds once, and the power of two is exact.
+        // The sum has up to 33 bits. Its conversion rounds once, and the power of two is exact.
         Xi((u64::from(bits) + 1) as f32 * (1.0 / 4_294_967_296.0))
     }
 }
 
-/// The linear congruential generator that pcg3d starts from.
+/// The linear congruential generator, the first step of pcg3d.
 #[inline]
 fn congruential(word: u32) -> u32 {
     word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)
 }
 
-/// The rest of pcg3d, of which the first two hashed words are taken.
+/// The steps of pcg3d after [`congruential`]; returns the first two of the three hashed words.
 #[inline]
 fn stirred(mut x: u32, mut y: u32, mut z: u32) -> [u32; 2] {
     x = x.wrapping_add(y.wrapping_mul(z));
