@@ -5,8 +5,8 @@ use crate::num::{Single, sqrt};
 /// Russian roulette with the variance parameter δ.
 ///
 /// A light of radiant intensity I is accepted at distance l with probability p = min(I/(δl²), 1), that is, if
-/// p ≥ ξ. The estimate of its radiance L = I/l² is then L/p = max(L, δ), and 0 otherwise. So an accepted light
-/// never counts less than δ, which is the scale of the noise [Tokuyoshi & Harada 2017, Eqs. 1–3].
+/// p ≥ ξ. The estimate of its radiance L = I/l² is then L/p = max(L, δ), and 0 otherwise. So an accepted
+/// light never counts less than δ, which is the scale of the noise [Tokuyoshi & Harada 2017, Eqs. 1–3].
 ///
 /// ```
 /// use stochastic_light_culling::{Roulette, Xi};
@@ -34,8 +34,8 @@ const LIFT: f32 = 4_294_967_296.0;
 const SCALE_ROUNDINGS: u16 = 5;
 
 impl Roulette {
-    /// Creates a roulette with `delta` = δ, in the unit of radiance: intensity over squared distance. A smaller δ
-    /// means less noise and more work.
+    /// Creates a roulette with `delta` = δ, in the unit of radiance: intensity over squared distance. A
+    /// smaller δ means less noise and more work.
     ///
     /// # Errors
     ///
@@ -68,8 +68,8 @@ impl Roulette {
         }
     }
 
-    /// The range l_max = √(I/(δξ)) of a light in a direction in which its radiant intensity is `intensity` = I:
-    /// the radius of its isosurface in that direction [Tokuyoshi & Harada 2017, Eq. 5].
+    /// The range l_max = √(I/(δξ)) of a light in a direction in which its radiant intensity is `intensity` =
+    /// I: the radius of its isosurface in that direction [Tokuyoshi & Harada 2017, Eq. 5].
     ///
     /// In the unit of length. Zero for I = 0, infinite for I = ∞.
     #[inline]
@@ -83,8 +83,8 @@ impl Roulette {
         intensity.sqrt() * LIFT / (xi.sqrt() * self.lifted_delta_root)
     }
 
-    /// The scale √(Φ/(δξ)) of a light with `flux` = Φ, rounded up. It scales the isosurface of the lobe, and so
-    /// its [`unit_bound`](crate::Bounded::unit_bound).
+    /// The scale √(Φ/(δξ)) of a light with `flux` = Φ, rounded up. It scales the isosurface of the lobe, and
+    /// so its [`unit_bound`](crate::Bounded::unit_bound).
     ///
     /// Zero for Φ = 0 and for NaN; otherwise in the normal range of `f32`, to which it is clamped.
     #[inline]
@@ -125,7 +125,8 @@ impl Roulette {
         }
     }
 
-    /// The weight 1/p of an accepted light, 0 of any other: the factor of each channel of a coloured radiance.
+    /// The weight 1/p of an accepted light, 0 of any other: the factor of each channel of a coloured
+    /// radiance.
     #[inline]
     #[must_use]
     pub fn weight(&self, intensity: f32, distance_squared: f32, xi: Xi) -> f32 {

@@ -5,7 +5,8 @@ use crate::lobe::Lobe;
 
 /// A virtual point light: a lit surface point that lights others [Keller 1997].
 ///
-/// The lobe `L` is what the point reflects. An ordinary point light has a [`ConstantLobe`](crate::ConstantLobe).
+/// The lobe `L` is what the point reflects. An ordinary point light has a
+/// [`ConstantLobe`](crate::ConstantLobe).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vpl<L> {
     position: Vec3,
@@ -16,8 +17,8 @@ pub struct Vpl<L> {
 impl<L: Lobe> Vpl<L> {
     /// Creates a light at `position`, where the flux `flux` = Φ in W arrives and is reflected by `lobe`.
     ///
-    /// For coloured light Φ is any non-negative weighting of the channels, such as luminance. The estimator is
-    /// unbiased in each channel as long as no channel is lit where Φ is zero. A light with Φ = 0 reaches
+    /// For coloured light Φ is any non-negative weighting of the channels, such as luminance. The estimator
+    /// is unbiased in each channel as long as no channel is lit where Φ is zero. A light with Φ = 0 reaches
     /// nothing.
     ///
     /// # Errors

@@ -50,8 +50,8 @@ impl PhongLobe {
     /// tell the inside.
     pub const MAX_EXPONENT: f32 = 1_048_576.0;
 
-    /// The lobe of a surface that reflects the share `albedo` = ρ of light that arrives with `incidence`, with
-    /// `exponent` = n.
+    /// The lobe of a surface that reflects the share `albedo` = ρ of light that arrives with `incidence`,
+    /// with `exponent` = n.
     ///
     /// # Errors
     ///
