@@ -11,8 +11,8 @@ const UNIT_LENGTH_ROUNDINGS: f64 = 8.0;
 
 /// A unit vector.
 ///
-/// Unit length to a few units in the last place, so nothing after the constructor checks again. It
-/// dereferences to the [`Vec3`] that it holds.
+/// The constructor normalises; nothing after it checks again. The length differs from 1 by at most 2.4·10⁻⁷.
+/// A `Direction` dereferences to its [`Vec3`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Direction(Vec3);
 
@@ -24,7 +24,7 @@ impl Direction {
     /// The direction along +z.
     pub const Z: Self = Self(Vec3::Z);
 
-    /// The direction of `vector`, which may have any finite, non-zero length, subnormal to huge.
+    /// Normalises `vector`, which may have any finite length but zero, from subnormal numbers to the largest.
     ///
     /// # Errors
     ///
@@ -41,7 +41,7 @@ impl Direction {
         Self::of("direction", vector)
     }
 
-    /// [`new`](Self::new), for a vector that an error calls `quantity`.
+    /// Like [`new`](Self::new), with `quantity` as the name of the vector in an error.
     pub(crate) fn of(quantity: &'static str, vector: Vec3) -> Result<Self, Error> {
         let largest = vector.abs().max_element();
         if !vector.is_finite() || largest == 0.0 {
@@ -51,7 +51,7 @@ impl Direction {
                 valid: "finite and not zero",
             });
         }
-        // Twice, since the reciprocal of a subnormal length overflows.
+        // Scaled in two steps: the reciprocal of a subnormal length overflows.
         let lifted = if largest < f32::MIN_POSITIVE {
             vector * (1.0 / f32::MIN_POSITIVE)
         } else {
@@ -61,18 +61,17 @@ impl Direction {
         Ok(Self(scaled / num::sqrt(scaled.length_squared())))
     }
 
-    /// `vector`, which has unit length already.
+    /// Wraps `vector`, which must have unit length.
     #[inline]
     pub(crate) fn from_unit(vector: Vec3) -> Self {
         debug_assert!((dot_f64(vector, vector) - 1.0).abs() < 1e-6);
         Self(vector)
     }
 
-    /// [`new`](Self::new), but for a vector that has unit length already, as near as `new` itself comes
-    /// to it, and is taken as it is: what was saved is what is read.
+    /// Like [`new`](Self::new), but keeps a `vector` whose length is as close to 1 as that of a direction, so
+    /// that a saved direction is read bit for bit.
     #[cfg(feature = "serde")]
     pub(crate) fn of_unit_or_any_length(vector: Vec3) -> Result<Self, Error> {
-        // The length is off by 3.5u at most, its square by twice that.
         const NEAR: f64 = UNIT_LENGTH_ROUNDINGS * num::UNIT_ROUNDOFF as f64;
         if (dot_f64(vector, vector) - 1.0).abs() <= NEAR {
             Ok(Self(vector))
@@ -81,16 +80,16 @@ impl Direction {
         }
     }
 
-    /// This direction mirrored at a surface with the given `normal`: see [`mirrored`].
+    /// Mirrors the direction at a surface with the given `normal`; see [`mirrored`].
     #[inline]
     pub(crate) fn mirrored(self, normal: Self) -> Self {
         Self::from_unit(mirrored(Vector3::from(self), normal.into()).into())
     }
 }
 
-/// 2(n·ω)n − ω, the direction ω = `direction` mirrored at a surface with the given `normal` = n.
+/// Mirrors `direction` = ω at a surface with the given `normal` = n: 2(n·ω)n − ω.
 ///
-/// Computed in `f64`, so that rounding to `f32` alone tilts it: half an ulp in each component.
+/// Computed in `f64`, so that only the rounding to `f32` tilts it: half an ulp in each component.
 #[inline(always)]
 pub(crate) fn mirrored<N: Single>(direction: Vector3<N>, normal: Vector3<N>) -> Vector3<N> {
     let (w, n) = (direction.widen(), normal.widen());

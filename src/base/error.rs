@@ -2,7 +2,7 @@ use core::fmt;
 
 use glam::{Mat3, Vec3};
 
-/// What a constructor refuses, with the value that it refused.
+/// An argument that a constructor rejects, with its value.
 ///
 /// ```
 /// use stochastic_light_culling::{Camera, Error, Ggx, TileGrid, glam::Mat4};
@@ -12,7 +12,7 @@ use glam::{Mat3, Vec3};
 /// assert!(error.to_string().starts_with("roughness α is 7, but must be in (0, 1]"));
 ///
 /// assert!(matches!(TileGrid::new([0, 9], 16), Err(Error::Size { .. })));
-/// // An identity is no perspective.
+/// // The identity is not a perspective projection.
 /// let camera = Camera::new(Mat4::IDENTITY, Mat4::IDENTITY);
 /// assert!(matches!(camera, Err(Error::Matrix { .. })));
 /// ```
@@ -23,16 +23,16 @@ pub enum Error {
     Number {
         /// What the number stands for.
         quantity: &'static str,
-        /// The number given.
+        /// The number.
         value: f32,
-        /// The range it must lie in.
+        /// Its valid range.
         valid: &'static str,
     },
-    /// A vector that is not finite, or has no direction where one is needed.
+    /// A vector that is not finite, or that has no direction where one is needed.
     Vector {
         /// What the vector stands for.
         quantity: &'static str,
-        /// The vector given.
+        /// The vector.
         value: Vec3,
         /// What it must be.
         valid: &'static str,
@@ -41,16 +41,16 @@ pub enum Error {
     Size {
         /// What the pair stands for.
         quantity: &'static str,
-        /// The pair given: width and height, or x and y.
+        /// The pair: width and height, or x and y.
         value: [u32; 2],
         /// What it must be.
         valid: &'static str,
     },
-    /// A matrix that is not of the kind needed; `element` is the number that shows it.
+    /// A matrix that is not of the required kind.
     Matrix {
         /// What the matrix stands for.
         quantity: &'static str,
-        /// The number that is wrong.
+        /// The element, or the deviation, that shows it.
         element: f32,
         /// What it must be.
         valid: &'static str,
@@ -86,7 +86,7 @@ impl fmt::Display for Error {
 
 impl core::error::Error for Error {}
 
-/// `value`, if it lies in `range`; NaN lies in none.
+/// Returns `value` if it lies in `range`, which NaN never does.
 pub(crate) fn number_in(
     quantity: &'static str,
     value: f32,
@@ -104,7 +104,7 @@ pub(crate) fn number_in(
     }
 }
 
-/// `value`, if all its components are finite.
+/// Returns `value` if all its components are finite.
 pub(crate) fn finite(quantity: &'static str, value: Vec3) -> Result<Vec3, Error> {
     if value.is_finite() {
         Ok(value)
@@ -117,7 +117,7 @@ pub(crate) fn finite(quantity: &'static str, value: Vec3) -> Result<Vec3, Error>
     }
 }
 
-/// The largest deviation of RᵀR from the identity, if it is at most `tolerance`.
+/// Returns the largest deviation of an element of RᵀR from the identity if it is at most `tolerance`.
 pub(crate) fn orthonormal(
     quantity: &'static str,
     matrix: Mat3,

@@ -1,4 +1,4 @@
-//! Errors, and unit directions.
+//! Errors and unit directions.
 
 mod direction;
 mod error;

@@ -57,7 +57,8 @@ use super::{BoundStrategy, Bounded, Ellipsoid, Triaxial};
 use crate::lobe::{AnisotropicGgxLobe, Fresnel, GgxLobes, MaskingShadowing, SurfaceAxes};
 use crate::num::{Double, Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3, exact_dot};
 
-/// Pays for rounding axes and centre to `f32`, in units of u times the longest semi-axis and the centre's length.
+/// Pays for rounding axes and centre to `f32`, in units of u times the longest semi-axis and the centre's
+/// length.
 const POINT_ROUNDINGS: f64 = 4.0;
 /// Pays for the rounding of r′ and of its product with a semi-axis.
 const SEMI_AXIS_ROUNDINGS: u16 = 24;

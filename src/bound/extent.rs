@@ -26,9 +26,10 @@ const NEGLIGIBLE_STEP: f64 = 1e-9;
 const DOUBLE_ROOT_SHARE: f64 = 1e-7;
 
 impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
-    /// An upper bound of d·x over the isosurface for Φ/(δξ) = 1 and a light at the origin, where d is
-    /// the unit `direction`. Exact but for rounding, which is upward, for the surface of the NDF alone,
-    /// with F·G2 at its [joint maximum](GgxLobe::max_reflected) everywhere. Scale it by [`Roulette::scale`](crate::Roulette::scale).
+    /// An upper bound of d·x over the isosurface for Φ/(δξ) = 1 and a light at the origin, where d is the
+    /// unit `direction`. Exact but for rounding, which is upward, for the surface of the NDF alone, with F·G2
+    /// at its [joint maximum](GgxLobe::max_reflected) everywhere. Scale it by
+    /// [`Roulette::scale`](crate::Roulette::scale).
     ///
     /// The extents along ±x, ±y and ±z of any frame are the lobe's box in it, and a plane n·x = c with
     /// c above the extent along n does not meet the lobe. Not negative, for the light itself belongs to

@@ -13,8 +13,8 @@ pub const MAX_QUADS: usize = 5;
 /// The numbers of a shape or a lobe, of which the first so many quads are in use.
 pub type Quads<N> = [Quad<N>; MAX_QUADS];
 
-/// A shape around a light, for generic code; each has these functions itself: [`Spheroid`](crate::Spheroid), [`Ellipsoid`](crate::Ellipsoid) and
-/// [`Sphere`](crate::Sphere).
+/// A shape around a light, for generic code; each has these functions itself: [`Spheroid`](crate::Spheroid),
+/// [`Ellipsoid`](crate::Ellipsoid) and [`Sphere`](crate::Sphere).
 pub trait Shape: Copy + 'static {
     /// The shape scaled by `scale ≥ 0` about the origin and then moved by `position`, rounded
     /// outward. Scaled by zero it is [empty](Self::is_empty).

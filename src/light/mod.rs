@@ -1,5 +1,4 @@
-//! A lobe with a position and a flux, and Russian roulette: how far a light reaches in a frame, and what it
-//! counts for there.
+//! Lights, and the Russian roulette that decides how far a light reaches in a frame and with which weight.
 
 mod roulette;
 mod vpl;

@@ -2,12 +2,11 @@ use super::Xi;
 use crate::base::{Error, number_in};
 use crate::num::{Single, sqrt};
 
-/// Russian roulette with variance parameter δ.
+/// Russian roulette with the variance parameter δ.
 ///
-/// A light of radiant intensity I is accepted at distance l with probability
-/// p = min(I/(δl²), 1), that is, wherever p ≥ ξ, and its radiance L = I/l² then counts L/p. Since
-/// L/p = max(L, δ), the estimate of an accepted light is never below δ: δ is the radiance that the
-/// noise is made of [Tokuyoshi & Harada 2017, Eqs. 1–3].
+/// A light of radiant intensity I is accepted at distance l with probability p = min(I/(δl²), 1), that is, if
+/// p ≥ ξ. The estimate of its radiance L = I/l² is then L/p = max(L, δ), and 0 otherwise. So an accepted
+/// light never counts less than δ, which is the scale of the noise [Tokuyoshi & Harada 2017, Eqs. 1–3].
 ///
 /// ```
 /// use stochastic_light_culling::{Roulette, Xi};
@@ -27,16 +26,16 @@ pub struct Roulette {
     lifted_delta_root: f32,
 }
 
-/// A factor of both sides of √Φ/(√δ√ξ), exact since it is a power of two. It keeps √δ√ξ in the normal
-/// range, since √δ is in \[2^−74.5, 2⁶⁴\] and √ξ in \[2^−74.5, 1\].
+/// Factor of numerator and denominator of √Φ/(√δ√ξ), 2³². It keeps √δ√ξ in the normal range, since √δ is in
+/// \[2^−74.5, 2⁶⁴\] and √ξ in \[2^−74.5, 1\]. A power of two, it rounds nothing.
 const LIFT: f32 = 4_294_967_296.0;
 
 /// Pays for the rounding of √(Φ/(δξ)).
 const SCALE_ROUNDINGS: u16 = 5;
 
 impl Roulette {
-    /// Roulette with `delta` = δ in the unit of the shaded radiance, I over squared distance: less
-    /// is less noise and more work.
+    /// Creates a roulette with `delta` = δ, in the unit of radiance: intensity over squared distance. A
+    /// smaller δ means less noise and more work.
     ///
     /// # Errors
     ///
@@ -49,14 +48,16 @@ impl Roulette {
         })
     }
 
-    /// δ.
+    /// The variance parameter δ.
     #[must_use]
     pub fn delta(&self) -> f32 {
         self.delta
     }
 
-    /// p = min(I/(δl²), 1) for `intensity` = I ≥ 0 and `distance_squared` = l² ≥ 0
-    /// [Tokuyoshi & Harada 2017, Eq. 2]. Zero where no light goes, at any distance.
+    /// The probability p = min(I/(δl²), 1) that a light is accepted, for `intensity` = I ≥ 0 and
+    /// `distance_squared` = l² ≥ 0 [Tokuyoshi & Harada 2017, Eq. 2].
+    ///
+    /// Zero for I = 0 at any distance, and for NaN; 1 for l = 0 and I > 0.
     #[inline]
     #[must_use]
     pub fn probability(&self, intensity: f32, distance_squared: f32) -> f32 {
@@ -67,10 +68,10 @@ impl Roulette {
         }
     }
 
-    /// l_max = √(I/(δξ)), how far a light reaches in a direction in which it sends `intensity` = I:
-    /// the radius of its isosurface there [Tokuyoshi & Harada 2017, Eq. 5].
+    /// The range l_max = √(I/(δξ)) of a light in a direction in which its radiant intensity is `intensity` =
+    /// I: the radius of its isosurface in that direction [Tokuyoshi & Harada 2017, Eq. 5].
     ///
-    /// In the unit of length; zero for I = 0.
+    /// In the unit of length. Zero for I = 0, infinite for I = ∞.
     #[inline]
     #[must_use]
     pub fn radius(&self, intensity: f32, xi: Xi) -> f32 {
@@ -82,10 +83,10 @@ impl Roulette {
         intensity.sqrt() * LIFT / (xi.sqrt() * self.lifted_delta_root)
     }
 
-    /// √(Φ/(δξ)), rounded up: what the isosurface of a lobe of unit intensity, and so its
-    /// [`unit_bound`](crate::Bounded::unit_bound), is scaled by for a light of `flux` = Φ.
+    /// The scale √(Φ/(δξ)) of a light with `flux` = Φ, rounded up. It scales the isosurface of the lobe, and
+    /// so its [`unit_bound`](crate::Bounded::unit_bound).
     ///
-    /// Zero for Φ = 0, and else within the normal range of `f32`.
+    /// Zero for Φ = 0 and for NaN; otherwise in the normal range of `f32`, to which it is clamped.
     #[inline]
     #[must_use]
     pub fn scale(&self, flux: f32, xi: Xi) -> f32 {
@@ -101,18 +102,19 @@ impl Roulette {
         N::select(flux.is_positive(), normal, flux.zero())
     }
 
-    /// Whether p ≥ ξ: whether the light counts at squared distance l² = `distance_squared`, which is
-    /// to say that l ≤ l_max.
+    /// Whether a light is accepted at `distance_squared` = l²: p ≥ ξ, which is the same as l ≤ l_max.
+    ///
+    /// False for I = 0 and for NaN.
     #[inline]
     #[must_use]
     pub fn accepts(&self, intensity: f32, distance_squared: f32, xi: Xi) -> bool {
         intensity > 0.0 && intensity >= xi.get() * (self.delta * distance_squared)
     }
 
-    /// The radiance estimate L/p of a light that is accepted, else 0
+    /// The estimate of the radiance: L/p of an accepted light, 0 of any other
     /// [Tokuyoshi & Harada 2017, Eq. 3].
     ///
-    /// Its mean over ξ is L = I/l². Infinite, as L is, at distance zero of a light.
+    /// Its mean over ξ is L = I/l². At l = 0 it is infinite, as L is.
     #[inline]
     #[must_use]
     pub fn estimate(&self, intensity: f32, distance_squared: f32, xi: Xi) -> f32 {
@@ -123,7 +125,8 @@ impl Roulette {
         }
     }
 
-    /// 1/p of a light that is accepted, else 0: the factor for each channel of a coloured radiance.
+    /// The weight 1/p of an accepted light, 0 of any other: the factor of each channel of a coloured
+    /// radiance.
     #[inline]
     #[must_use]
     pub fn weight(&self, intensity: f32, distance_squared: f32, xi: Xi) -> f32 {

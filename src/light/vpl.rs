@@ -5,7 +5,8 @@ use crate::lobe::Lobe;
 
 /// A virtual point light: a lit surface point that lights others [Keller 1997].
 ///
-/// `L` is what it reflects; an ordinary point light is one with a [`ConstantLobe`](crate::ConstantLobe).
+/// The lobe `L` is what the point reflects. An ordinary point light has a
+/// [`ConstantLobe`](crate::ConstantLobe).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vpl<L> {
     position: Vec3,
@@ -14,11 +15,11 @@ pub struct Vpl<L> {
 }
 
 impl<L: Lobe> Vpl<L> {
-    /// A light at `position`, where a photon of `flux` Φ (W) arrived and is reflected by `lobe`.
+    /// Creates a light at `position`, where the flux `flux` = Φ in W arrives and is reflected by `lobe`.
     ///
-    /// For coloured light Φ is any non-negative weighting of the channels, such as luminance: the
-    /// estimator stays unbiased in each channel as long as no channel is lit where Φ is zero.
-    /// Zero flux is a light that reaches nothing.
+    /// For coloured light Φ is any non-negative weighting of the channels, such as luminance. The estimator
+    /// is unbiased in each channel as long as no channel is lit where Φ is zero. A light with Φ = 0 reaches
+    /// nothing.
     ///
     /// # Errors
     ///
@@ -32,23 +33,25 @@ impl<L: Lobe> Vpl<L> {
         })
     }
 
-    /// Where the light is.
+    /// The position of the light, in world space.
     pub fn position(&self) -> Vec3 {
         self.position
     }
 
-    /// Φ, in W.
+    /// The flux Φ in W.
     pub fn flux(&self) -> f32 {
         self.flux
     }
 
-    /// What the light reflects.
+    /// The lobe.
     pub fn lobe(&self) -> &L {
         &self.lobe
     }
 
-    /// I(ω_o) = Φ f max(ω_o·n, 0) in W/sr, towards the unit direction `outgoing`
+    /// The radiant intensity I(ω_o) = Φ f max(ω_o·n, 0) in W/sr towards the unit vector `outgoing` = ω_o
     /// [Tokuyoshi & Harada 2017, Eq. 4].
+    ///
+    /// Not negative; zero below the horizon of the lobe.
     #[inline]
     pub fn radiant_intensity(&self, outgoing: Vec3) -> f32 {
         self.flux * self.lobe.value(outgoing)

@@ -1,13 +1,13 @@
 use crate::base::{Error, number_in};
 
-/// A light's random number ξ in (0, 1] for one frame, shared by all points that it may light.
+/// The random number ξ in (0, 1] of a light in one frame, shared by all points that the light may reach.
 ///
-/// Zero is left out, since it would let the light reach infinitely far.
+/// Zero is excluded, since the light would reach infinitely far.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Xi(f32);
 
 impl Xi {
-    /// A random number of the caller's own.
+    /// Wraps a random number of the caller's own.
     ///
     /// # Errors
     ///
@@ -16,7 +16,7 @@ impl Xi {
         number_in("random number ξ", xi, "in (0, 1]", f32::from_bits(1)..=1.0).map(Self)
     }
 
-    /// ξ.
+    /// The number ξ.
     #[must_use]
     pub fn get(self) -> f32 {
         self.0
@@ -35,7 +35,7 @@ impl Xi {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Seed(pub u32);
 
-/// A frame of a [`Seed`]'s sequence: gives each light its ξ, with no state to keep.
+/// A frame of a sequence of random numbers. It gives each light its ξ, without any state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FrameSeed {
     /// Hashed frame and seed, both odd: a product with an even number loses bits, and with zero all of them.
@@ -47,7 +47,7 @@ impl Seed {
     #[inline]
     #[must_use]
     pub fn frame(self, frame: u32) -> FrameSeed {
-        // Any third word that is not small.
+        // The third word is arbitrary, but not small.
         let [first, second] = stirred(
             congruential(frame),
             congruential(self.0),
@@ -60,27 +60,27 @@ impl Seed {
 }
 
 impl FrameSeed {
-    /// The ξ of the light with the index `light`: the same each time.
+    /// The ξ of the light with the index `light`, the same in each call.
     ///
-    /// A multiple of 2⁻³², rounded to `f32`, from the hash of [Jarzynski & Olano 2020, "pcg3d"]. Frame and
+    /// It is a multiple of 2⁻³², rounded to `f32`, from the hash of [Jarzynski & Olano 2020, "pcg3d"]. Frame and
     /// seed are hashed before, since otherwise some seeds show a lattice, and so do equal frames and seeds.
     #[inline]
     #[must_use]
     pub fn xi(self, light: u32) -> Xi {
         let [first, second] = self.key;
         let [bits, _] = stirred(congruential(light), first, second);
-        // The sum takes 33 bits; its conversion rounds once, and the power of two is exact.
+        // The sum has up to 33 bits. Its conversion rounds once, and the power of two is exact.
         Xi((u64::from(bits) + 1) as f32 * (1.0 / 4_294_967_296.0))
     }
 }
 
-/// The linear congruential generator that pcg3d starts from.
+/// The linear congruential generator, the first step of pcg3d.
 #[inline]
 fn congruential(word: u32) -> u32 {
     word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)
 }
 
-/// The rest of pcg3d, of which the first two hashed words are taken.
+/// The steps of pcg3d after [`congruential`]; returns the first two of the three hashed words.
 #[inline]
 fn stirred(mut x: u32, mut y: u32, mut z: u32) -> [u32; 2] {
     x = x.wrapping_add(y.wrapping_mul(z));

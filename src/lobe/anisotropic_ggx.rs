@@ -6,11 +6,11 @@ use super::{Ggx, MaskingShadowing};
 use crate::base::{Error, number_in};
 use crate::num::{Real, Single, Vector3};
 
-/// A GGX microsurface that is rougher along one tangent than along the other: brushed metal, hair-like
-/// grain [Heitz 2014; Trowbridge & Reitz 1975].
+/// An anisotropic GGX microsurface, with one roughness along the tangent and one across it, such as brushed
+/// metal [Heitz 2014; Trowbridge & Reitz 1975].
 ///
-/// Its directions are given in the frame of the surface, as their components along the tangent, the
-/// bitangent n × tangent, and the normal n.
+/// Its functions take vectors in the frame of the surface: components along the tangent, the bitangent
+/// n × tangent, and the normal n.
 ///
 /// ```
 /// use stochastic_light_culling::{AnisotropicGgx, Ggx, HeightCorrelated, Separable, glam::Vec3};
@@ -22,9 +22,9 @@ use crate::num::{Real, Single, Vector3};
 /// let (even, plain) = (AnisotropicGgx::new(0.2, 0.2)?, Ggx::new(0.2)?);
 /// let slanted = Vec3::new(0.6, 0.0, 0.8);
 /// assert!((even.masking(slanted) - plain.masking(0.8)).abs() < 1e-6);
-/// // Facets that are lit are more often seen as well than chance has it.
-/// let by_chance = brushed.masking_shadowing::<Separable>(slanted, slanted);
-/// assert!(by_chance < brushed.masking_shadowing::<HeightCorrelated>(slanted, slanted));
+/// // Masking and shadowing are correlated: a lit facet is more likely to be visible.
+/// let independent = brushed.masking_shadowing::<Separable>(slanted, slanted);
+/// assert!(independent < brushed.masking_shadowing::<HeightCorrelated>(slanted, slanted));
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ pub struct AnisotropicGgx {
 }
 
 impl AnisotropicGgx {
-    /// A microsurface with the roughness `along` = α_x along the tangent and `across` = α_y along the
+    /// Creates a microsurface with the roughness `along` = α_x along the tangent and `across` = α_y along the
     /// bitangent.
     ///
     /// # Errors
@@ -57,7 +57,7 @@ impl AnisotropicGgx {
         })
     }
 
-    /// \[α_x, α_y\].
+    /// The roughness \[α_x, α_y\].
     #[must_use]
     pub fn roughness(self) -> [f32; 2] {
         self.roughness
@@ -69,11 +69,12 @@ impl AnisotropicGgx {
         along == across
     }
 
-    /// The NDF D = 1/(π α_x α_y (x²/α_x² + y²/α_y² + z²)²) in sr⁻¹ at the unit vector along `half_vector`
-    /// = (x, y, z), which need not have unit length itself.
+    /// The normal distribution function D = 1/(π α_x α_y (x²/α_x² + y²/α_y² + z²)²) in sr⁻¹
+    /// [Heitz 2014], where (x, y, z) is the unit vector along `half_vector`. `half_vector` itself may
+    /// have any finite length.
     ///
-    /// Zero at and below the horizon, z ≤ 0, and for NaN. The largest value, 1/(πα_xα_y), is at the
-    /// normal.
+    /// D is largest at the normal, where it is 1/(πα_xα_y). Zero at and below the horizon, z ≤ 0, and for
+    /// NaN.
     #[inline]
     #[must_use]
     pub fn ndf(self, half_vector: Vec3) -> f32 {
@@ -88,7 +89,7 @@ impl AnisotropicGgx {
     /// Smith's masking function G1 = 2z/(z + √(α_x²x² + α_y²y² + z²)) for the unit vector `direction`
     /// = (x, y, z): the visible share of the facets that face the viewer [Heitz 2014].
     ///
-    /// In \[0, 1\]; zero for z ≤ 0 and NaN.
+    /// In \[0, 1\]. Zero for z ≤ 0 and for NaN.
     #[must_use]
     pub fn masking(self, direction: Vec3) -> f32 {
         if direction.z > 0.0 {
@@ -98,8 +99,8 @@ impl AnisotropicGgx {
         }
     }
 
-    /// G2 in \[0, 1\], of the form `G`, for the unit vectors `incoming` = ω_i and `outgoing` = ω_o: the
-    /// share of facets that are both lit and seen. Zero if either is not above the surface.
+    /// The masking-shadowing function G2 in \[0, 1\], of the form `G`, for the unit vectors `incoming` = ω_i
+    /// and `outgoing` = ω_o. Zero if either is not above the surface, and for NaN.
     #[must_use]
     pub fn masking_shadowing<G: MaskingShadowing>(self, incoming: Vec3, outgoing: Vec3) -> f32 {
         if !(incoming.z > 0.0 && outgoing.z > 0.0) {
@@ -114,13 +115,13 @@ impl AnisotropicGgx {
             )
     }
 
-    /// The isotropic microsurface of the lesser roughness.
+    /// The isotropic microsurface with the smaller roughness.
     pub(super) fn smoother(self) -> Ggx {
         Ggx::of_valid(self.roughness[0].min(self.roughness[1]))
     }
 }
 
-/// The NDF at a half vector in the frame of the surface: see [`AnisotropicGgx::ndf`].
+/// The NDF at a half vector in the frame of the surface; see [`AnisotropicGgx::ndf`].
 #[inline(always)]
 pub(super) fn anisotropic_ndf<N: Single>([along, across]: [N; 2], half_vector: Vector3<N>) -> N {
     let Vector3 { x, y, z } = half_vector;
@@ -130,14 +131,14 @@ pub(super) fn anisotropic_ndf<N: Single>([along, across]: [N; 2], half_vector: V
     }
     let (x, y) = (x / along, y / across);
     let spread = (x * x + y * y + z * z) / half_vector.length_squared();
-    // At least 1 but for rounding, which can be all that is left of lengths that underflow.
+    // At least 1 but for rounding, which is unbounded where lengths underflow.
     let spread = spread.max(z.splat(1.0));
     let ndf = z.splat(FRAC_1_PI) / (along * across) / spread / spread;
     N::select(is_above, ndf, z.zero())
 }
 
-/// √(α_x²x² + α_y²y² + z²) for the unit vector `direction` = (x, y, z) in the frame of the surface: the root
-/// of Smith's masking functions. At one height z it lies between those of the lesser and of the greater
+/// The root √(α_x²x² + α_y²y² + z²) of Smith's masking functions for the unit vector `direction` = (x, y, z)
+/// in the frame of the surface. For equal z it lies between the roots of the smaller and of the larger
 /// roughness.
 #[inline(always)]
 pub(super) fn anisotropic_masking_root<N: Real>(

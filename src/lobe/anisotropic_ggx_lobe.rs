@@ -9,9 +9,9 @@ use crate::num::{Matrix3, Real, Single, Vector3};
 
 /// The lobe of an [`AnisotropicGgx`] microsurface for light from one direction [Heitz 2014].
 ///
-/// f·max(μ_o, 0) = F(ω_i·ω_h) G2(ω_i, ω_o) D(ω_h)/(4μ), with the [`Fresnel`] factor `F` and the
-/// [`MaskingShadowing`] function `G`. Empty, zero in every direction, if the light arrives from below
-/// the surface or along it.
+/// Its value is f·max(μ_o, 0) = F(ω_i·ω_h) G2(ω_i, ω_o) D(ω_h)/(4μ), with the [`Fresnel`] factor `F` and the
+/// [`MaskingShadowing`] function `G`. It is empty, that is, zero in every direction, if the light arrives
+/// from below the surface or at grazing incidence, μ ≤ 0.
 ///
 /// ```
 /// use stochastic_light_culling::{
@@ -23,43 +23,42 @@ use crate::num::{Matrix3, Real, Single, Vector3};
 /// let (brushed, tangent) = (AnisotropicGgx::new(0.05, 0.3)?, Direction::X);
 /// let lobe = AnisotropicGgxLobe::new(brushed, Schlick::new(0.9)?, incidence, tangent)?;
 ///
-/// // The highlight is wide across the tangent, along which the surface is smooth.
+/// // The surface is smooth along the tangent, so the highlight is wider across it.
 /// let towards = |x, y| Direction::new(Vec3::new(x, y, 1.0)).map(Vec3::from);
 /// assert!(lobe.value(towards(1.0, 0.3)?) > lobe.value(towards(1.3, 0.0)?));
 ///
 /// assert_eq!((lobe.ggx(), lobe.tangent()), (brushed, tangent));
-/// // No more than this leaves it of what arrives at facets that are lit.
 /// assert!(lobe.max_reflected() <= 1.0 && lobe.incident_cosine() > 0.7);
 /// assert!(lobe.separable().value(towards(1.0, 0.3)?) <= lobe.value(towards(1.0, 0.3)?));
 ///
 /// let semi_axes = lobe.unit_bound().semi_axes();
 /// assert!(semi_axes.max_element() > 3.0 * semi_axes.min_element());
-/// // A tangent is needed to say which way is which.
+/// // A tangent parallel to the normal gives no frame.
 /// assert!(AnisotropicGgxLobe::new(brushed, Schlick::new(0.9)?, incidence, Direction::Z).is_err());
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AnisotropicGgxLobe<F = NoFresnel, G = HeightCorrelated> {
     ggx: AnisotropicGgx,
-    /// As given.
+    /// Unchanged, as the caller passed it.
     tangent: Direction,
-    /// The tangent at right angles to n, and the bitangent.
+    /// The tangent's part perpendicular to n, normalised, and the bitangent.
     tangent_axes: [Vec3; 2],
-    /// All that the azimuth of ω_o does not matter to: an isotropic lobe, of the lesser roughness, since
-    /// that has the largest G2 of any azimuth, but with this lobe's own root for ω_i.
+    /// What does not depend on the azimuth of ω_o: an isotropic lobe with the root of this lobe for ω_i. It
+    /// has the smaller roughness, whose G2 is at least that of any azimuth.
     at_any_azimuth: GgxLobe<F, G>,
 }
 
 impl<F: Fresnel> AnisotropicGgxLobe<F> {
-    /// The lobe of light that arrives with `incidence`, with height-correlated masking and shadowing.
+    /// Creates the lobe of light that arrives with `incidence`, with height-correlated masking and shadowing.
     ///
-    /// The surface has the roughness α_x along the part of `tangent` that is at right angles to n, of
-    /// either sign.
+    /// The surface has the roughness α_x along the part of `tangent` that is perpendicular to n. The sign of
+    /// `tangent` does not matter.
     ///
     /// # Errors
     ///
-    /// [`Error::Vector`] if `tangent` is parallel to `normal`, or within 10⁻⁶ radians of that, where it
-    /// has no other part than rounding.
+    /// [`Error::Vector`] if `tangent` is parallel to the normal to within 10⁻⁶ radians, where its
+    /// perpendicular part is mostly rounding.
     pub fn new(
         ggx: AnisotropicGgx,
         fresnel: F,
@@ -116,12 +115,12 @@ impl<F: Fresnel, G> AnisotropicGgxLobe<F, G> {
         }
     }
 
-    /// The microsurface.
+    /// The GGX microsurface.
     pub fn ggx(&self) -> AnisotropicGgx {
         self.ggx
     }
 
-    /// How the light arrives.
+    /// The surface normal, and the direction that light comes from.
     pub fn incidence(&self) -> Incidence {
         Incidence {
             normal: self.normal(),
@@ -129,38 +128,38 @@ impl<F: Fresnel, G> AnisotropicGgxLobe<F, G> {
         }
     }
 
-    /// n, the surface normal.
+    /// The surface normal n.
     pub fn normal(&self) -> Direction {
         self.at_any_azimuth.normal()
     }
 
-    /// The tangent, as it was given: not at right angles to n if it was not.
+    /// The tangent that was passed to [`new`](AnisotropicGgxLobe::new); not necessarily perpendicular to n.
     pub fn tangent(&self) -> Direction {
         self.tangent
     }
 
-    /// ω_i, the direction that light comes from.
+    /// The direction ω_i that light comes from.
     pub fn incoming(&self) -> Direction {
         self.at_any_azimuth.incoming()
     }
 
-    /// μ = ω_i·n in \[0, 1\]; 0 means that the lobe is empty.
+    /// The cosine μ = ω_i·n in \[0, 1\] of the angle of incidence. Zero if the lobe is empty.
     pub fn incident_cosine(&self) -> f32 {
         self.at_any_azimuth.incident_cosine()
     }
 
-    /// ω_u = 2μn − ω_i, the direction of mirror reflection.
+    /// The mirror direction ω_u = 2μn − ω_i.
     pub fn mirror_direction(&self) -> Direction {
         self.at_any_azimuth.mirror_direction()
     }
 
-    /// F, the Fresnel factor.
+    /// The Fresnel factor F.
     pub fn fresnel(&self) -> &F {
         self.at_any_azimuth.fresnel()
     }
 
-    /// An isotropic lobe with the same normal, ω_i, F and G1(ω_i), whose G2 is nowhere below this one's;
-    /// the same lobe altogether if α_x = α_y.
+    /// An isotropic lobe with the same normal, ω_i, F and G1(ω_i), whose G2 is nowhere below that of this
+    /// lobe. For α_x = α_y it is the same lobe.
     pub(crate) fn at_any_azimuth(&self) -> &GgxLobe<F, G> {
         &self.at_any_azimuth
     }
@@ -175,12 +174,12 @@ impl<F: Fresnel, G> AnisotropicGgxLobe<F, G> {
     }
 }
 
-/// The frame of a surface with a grain.
+/// The tangent frame of an anisotropic surface.
 #[derive(Clone, Copy)]
 pub(crate) struct SurfaceAxes<D> {
-    /// The unit vectors along the tangent, at right angles to n, the bitangent n × tangent, and n.
+    /// The unit vectors along the tangent's part perpendicular to n, the bitangent n × tangent, and n.
     pub axes: [Vector3<D>; 3],
-    /// The sine of the angle between the tangent as given and n; next to zero there is no frame.
+    /// The sine of the angle between the tangent and n. Where it is nearly zero the frame is meaningless.
     pub sine: D,
 }
 
@@ -211,7 +210,7 @@ fn divided<D: Real>(v: Vector3<D>, length: D) -> Vector3<D> {
 }
 
 impl<F: Fresnel, G: MaskingShadowing> AnisotropicGgxLobe<F, G> {
-    /// An upper bound of F·G2/G1(ω_i) over all directions above the surface, as
+    /// An upper bound of F·G2/G1(ω_i) over all directions above the surface; see
     /// [`GgxLobe::max_reflected`].
     pub fn max_reflected(&self) -> f32 {
         self.at_any_azimuth.max_reflected()
@@ -240,8 +239,8 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
     }
 }
 
-/// f·max(μ_o, 0) towards `outgoing`, of the lobe that is `at_any_azimuth` but for its azimuth;
-/// `to_surface_frame` is the rotation from world space to (tangent, bitangent, n).
+/// f·max(μ_o, 0) towards `outgoing`, for the parts of a lobe. `to_surface_frame` is the rotation from world
+/// space to (tangent, bitangent, n).
 #[inline(always)]
 pub(super) fn anisotropic_value<N: Single, F: Fresnel, G: MaskingShadowing>(
     at_any_azimuth: &GgxLobes<N>,

@@ -3,14 +3,14 @@ use super::{Fresnel, FresnelMajorant};
 use crate::base::{Error, number_in};
 use crate::num::Single;
 
-/// Unpolarised light at a smooth absorbing surface, a metal, with complex index η + iκ.
+/// The Fresnel factor of a smooth metal with the complex refractive index η + iκ, for unpolarised light.
 ///
-/// The same form as [`Dielectric`](super::Dielectric) with w = a + ib = √((η + iκ)² − s²):
+/// It has the form of [`Dielectric`](super::Dielectric) with w = a + ib = √((η + iκ)² − s²):
 ///
 /// F = ½ |1 − (η + iκ)²|²/|c + w|⁴ (1 + |cw − s²|²/|cw + s²|²).
 ///
-/// Its quasi-convexity in θ_h, which [`maximum`](Fresnel::maximum) needs, is known numerically (a
-/// search over η and κ found no exception), not proved.
+/// [`maximum`](Fresnel::maximum) needs F to be quasi-convex in θ_h. For metals this is not proved; a
+/// numerical search over η and κ found no exception.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conductor {
     index: f32,
@@ -19,8 +19,8 @@ pub struct Conductor {
 }
 
 impl Conductor {
-    /// A metal with refractive index `index` = η and extinction coefficient `extinction` = κ, both
-    /// relative to the medium in front of it. Gold at 650 nm has η = 0.16, κ = 3.5.
+    /// Creates a metal with the refractive index `index` = η and the extinction coefficient `extinction` = κ,
+    /// both relative to the medium in front of it. Gold at 650 nm has η = 0.16 and κ = 3.5.
     ///
     /// # Errors
     ///
@@ -39,13 +39,13 @@ impl Conductor {
         })
     }
 
-    /// η, the refractive index.
+    /// The refractive index η.
     #[must_use]
     pub fn index(&self) -> f32 {
         self.index
     }
 
-    /// κ, the extinction coefficient.
+    /// The extinction coefficient κ.
     #[must_use]
     pub fn extinction(&self) -> f32 {
         self.extinction
@@ -82,8 +82,8 @@ impl Fresnel for Conductor {
 #[inline(always)]
 fn reflectance<N: Single>(eta: N, kappa: N, c: N) -> N {
     let s_squared = c.one_minus() * (c + 1.0);
-    // w² = real + i·imaginary. Of the two roots the larger is taken first, and the other from
-    // 2ab = imaginary, so that neither cancels.
+    // w² = real + i·imaginary. The larger of a and b is a root, the other follows from 2ab = imaginary, so
+    // that neither cancels.
     let real = index_squared_less_sine_squared(eta, c) - kappa * kappa;
     let half_imaginary = eta * kappa;
     let modulus = (real * real + half_imaginary * 4.0 * half_imaginary).sqrt();

@@ -4,8 +4,8 @@ use glam::Vec3;
 
 use super::Lobe;
 
-/// The same radiant intensity in every direction: an engine's ordinary point light, whose intensity
-/// is its flux over 4π, culled as in [Tokuyoshi & Harada 2016].
+/// A lobe with the same value 1/(4π) sr⁻¹ in every direction: the ordinary point light of engines
+/// [Tokuyoshi & Harada 2016]. Its radiant intensity is its flux over 4π.
 ///
 /// ```
 /// use stochastic_light_culling::{ConstantLobe, Roulette, Vpl, Xi, glam::Vec3};
@@ -21,7 +21,7 @@ use super::Lobe;
 pub struct ConstantLobe;
 
 impl ConstantLobe {
-    /// 1/(4π) sr⁻¹.
+    /// The value 1/(4π) in sr⁻¹.
     pub(crate) const VALUE: f32 = 0.25 * FRAC_1_PI;
 }
 

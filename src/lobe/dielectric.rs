@@ -2,11 +2,11 @@ use super::{Fresnel, FresnelMajorant};
 use crate::base::{Error, number_in};
 use crate::num::Single;
 
-/// Unpolarised light at a smooth interface between two transparent media
+/// The Fresnel factor of a smooth interface between two transparent media, for unpolarised light
 /// [Tokuyoshi & Harada 2017, supplemental Eqs. 3–5].
 ///
-/// With c = cosθ_h, s = sinθ_h and w = √(η² − s²), both amplitudes share the factor
-/// (c − w)/(c + w) = (1 − η²)/(c + w)², whose right-hand side does not cancel for η near 1, and
+/// Let c = cosθ_h, s = sinθ_h and w = √(η² − s²). Both amplitudes share the factor
+/// (c − w)/(c + w) = (1 − η²)/(c + w)², whose right-hand side does not cancel for η near 1. So
 ///
 /// F = ½ ((1 − η²)/(c + w)²)² (1 + ((cw − s²)/(cw + s²))²).
 ///
@@ -18,9 +18,10 @@ pub struct Dielectric {
 }
 
 impl Dielectric {
-    /// An interface with `relative_index` = η = n_t/n_i: the refractive index of the medium behind
-    /// it over that of the medium which the light arrives in. 1.5 for glass seen from air, 1/1.5
-    /// from within, where light past the critical angle is reflected totally.
+    /// Creates an interface with `relative_index` = η = n_t/n_i: the refractive index of the medium behind it
+    /// over that of the medium in which the light arrives. η is 1.5 for glass in air, and 1/1.5 from inside
+    /// the glass, where light beyond the critical angle is reflected totally. F is 0 for η = 1, but 1 at
+    /// grazing incidence.
     ///
     /// # Errors
     ///
@@ -38,7 +39,7 @@ impl Dielectric {
         })
     }
 
-    /// η, the relative refractive index.
+    /// The relative refractive index η.
     #[must_use]
     pub fn relative_index(&self) -> f32 {
         self.relative_index
@@ -83,8 +84,8 @@ fn reflectance<N: Single>(eta: N, c: N) -> N {
     N::select(is_total, c.splat(1.0), partial.min(c.splat(1.0)))
 }
 
-/// η² − s² for s² = 1 − c², with an error of a few roundings of the lesser of s² and c², which at the
-/// critical angle decides.
+/// η² − s² for s² = 1 − c². Its error is a few roundings of the smaller of s² and c², which matters at the
+/// critical angle.
 #[inline(always)]
 pub(super) fn index_squared_less_sine_squared<N: Single>(eta: N, c: N) -> N {
     N::select(

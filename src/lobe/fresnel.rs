@@ -15,15 +15,15 @@ const MAJORANT_RISE_ROUNDINGS: u16 = 2;
 /// Pays for the difference 1 − F0.
 const SCHLICK_RISE_ROUNDINGS: u16 = 1;
 
-/// The share of light that a smooth interface reflects, F.
+/// The Fresnel factor F: the share of light that a smooth interface reflects.
 ///
-/// An implementation must be quasi-convex in the angle, that is, fall and then rise, or only one of
-/// both: [`maximum`](Fresnel::maximum) rests on it.
+/// An implementation must be quasi-convex in the angle: F falls, then rises, or does only one of both.
+/// [`maximum`](Fresnel::maximum) relies on it.
 ///
 /// ```
 /// use stochastic_light_culling::{Direction, Fresnel, FresnelMajorant, Ggx, GgxLobe, Incidence};
 ///
-/// /// A coat over a base of one reflectance: F0 = 0.04 and all of the light at grazing.
+/// /// A coat with F0 = 0.04 over a base with constant reflectance.
 /// #[derive(Clone, Copy)]
 /// struct Coat(f32);
 ///
@@ -32,7 +32,7 @@ const SCHLICK_RISE_ROUNDINGS: u16 = 1;
 ///         self.0.max(0.04 + 0.96 * (1.0 - half_angle_cosine).powi(5))
 ///     }
 ///
-///     // Without this the tight bound would follow the largest F, which is 1.
+///     // The default is the largest F, which is 1 here, and gives a larger tight bound.
 ///     fn majorant(&self) -> FresnelMajorant {
 ///         FresnelMajorant { base: self.0.max(0.04), rise: 0.96 }
 ///     }
@@ -43,23 +43,24 @@ const SCHLICK_RISE_ROUNDINGS: u16 = 1;
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 pub trait Fresnel: Copy + 'static {
-    /// F in \[0, 1\] for cosθ_h = ω_i·ω_h in \[0, 1\].
+    /// F in \[0, 1\] for `half_angle_cosine` = cosθ_h = ω_i·ω_h in \[0, 1\]: 1 at normal incidence, 0 at
+    /// grazing.
     fn reflectance(&self, half_angle_cosine: f32) -> f32;
 
-    /// An upper bound, tight to rounding, of F over all half angles from zero to the one whose cosine
-    /// is `smallest_cosine` in \[0, 1\].
+    /// An upper bound of F over all half angles from zero to the one whose cosine is `smallest_cosine` in
+    /// \[0, 1\]. It is tight but for rounding.
     ///
-    /// A quasi-convex F is largest at one of the two ends
-    /// [Tokuyoshi & Harada 2017, supplemental Eq. 6]. Never below 10⁻³⁰.
+    /// A quasi-convex F is largest at one of the two ends [Tokuyoshi & Harada 2017, supplemental Eq. 6]. The
+    /// bound is clamped to \[10⁻³⁰, 1\].
     #[inline]
     fn maximum(&self, smallest_cosine: f32) -> f32 {
         quasi_convex_maximum(|cosine| self.reflectance(cosine), smallest_cosine)
     }
 
-    /// An upper bound of F, of Schlick's form, which the [tight bound](crate::Tight)
-    /// follows. The closer it is, the smaller that bound; it need not be below 1.
+    /// An upper bound of F in Schlick's form, for the [tight bound](crate::Tight). The closer it is to F, the
+    /// smaller that bound. It may exceed 1.
     ///
-    /// Unless it is implemented, the largest F at all angles.
+    /// By default it is the largest F of all angles.
     fn majorant(&self) -> FresnelMajorant {
         FresnelMajorant {
             base: self.maximum(0.0),
@@ -71,7 +72,7 @@ pub trait Fresnel: Copy + 'static {
     #[doc(hidden)]
     const IS_IN_LANES: bool = false;
 
-    /// [`reflectance`](Self::reflectance) of one factor in each lane.
+    /// Computes the [`reflectance`](Self::reflectance) of one factor in each lane.
     #[doc(hidden)]
     #[inline(always)]
     fn reflectance_in_lanes<N: Single>(fresnels: &[Self], half_angle_cosine: N) -> N {
@@ -82,7 +83,7 @@ pub trait Fresnel: Copy + 'static {
         )
     }
 
-    /// [`maximum`](Self::maximum) of one factor in each lane.
+    /// Computes the [`maximum`](Self::maximum) of one factor in each lane.
     #[doc(hidden)]
     #[inline(always)]
     fn maximum_in_lanes<N: Single>(fresnels: &[Self], smallest_cosine: N) -> N {
@@ -101,10 +102,10 @@ pub trait Fresnel: Copy + 'static {
     }
 }
 
-/// An upper bound of a quasi-convex F: see [`Fresnel::maximum`].
+/// An upper bound of a quasi-convex F; see [`Fresnel::maximum`].
 #[inline(always)]
 fn quasi_convex_maximum<N: Single>(reflectance: impl Fn(N) -> N, smallest_cosine: N) -> N {
-    // Powers of smaller cosines underflow.
+    // Powers of smaller cosines would underflow.
     let is_tiny = smallest_cosine.splat(1e-15).gt(smallest_cosine);
     let rounded = smallest_cosine * round_down(1.0, SMALLEST_COSINE_ROUNDINGS);
     let smallest_cosine = N::select(is_tiny, smallest_cosine.zero(), rounded);
@@ -114,21 +115,22 @@ fn quasi_convex_maximum<N: Single>(reflectance: impl Fn(N) -> N, smallest_cosine
     most.max(most.splat(LEAST_REFLECTED)).min(most.splat(1.0))
 }
 
-/// base + rise (1 − cosθ_h)⁵, at least F for every cosθ_h in \[0, 1\].
+/// An upper bound of F in Schlick's form: base + rise (1 − cosθ_h)⁵, for every cosθ_h in \[0, 1\]. See
+/// [`Fresnel::majorant`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FresnelMajorant {
-    /// Its value head-on, at least 10⁻³⁰.
+    /// Its value at normal incidence, at least 10⁻³⁰.
     pub base: f32,
-    /// Not negative.
+    /// Its increase from normal to grazing incidence, not negative.
     pub rise: f32,
 }
 
 impl FresnelMajorant {
-    /// The closest of some that bound `reflectance`, which must be quasi-convex, in the mean of its
-    /// quotient with it.
+    /// Searches a close majorant of `reflectance`, which must be quasi-convex: of several candidates the one
+    /// with the smallest mean quotient of majorant and F.
     ///
-    /// Between two cosines F is at most the larger of its values there, and the majorant at least its
+    /// Between two cosines F is at most the larger of its two values there, and the majorant is at least its
     /// value at the larger cosine.
     pub(super) fn of(reflectance: impl Fn(f32) -> f32) -> Self {
         const STEPS: usize = 64;
@@ -144,7 +146,7 @@ impl FresnelMajorant {
                 rise: 0.0,
             },
         );
-        // Shapes 1 + rise (1 − c)⁵, from the steepest that is of use to none at all.
+        // Candidates are multiples of 1 + rise (1 − c)⁵, from steep to flat.
         let mut rise = 256.0;
         while rise > 0.01 {
             let shape = |i: usize| 1.0 + rise * rises[i];
@@ -170,7 +172,7 @@ impl FresnelMajorant {
     }
 }
 
-/// No Fresnel factor, F = 1: all light is reflected. Costs nothing.
+/// No Fresnel factor: F = 1, all light is reflected, at no cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct NoFresnel;
@@ -212,8 +214,8 @@ pub struct Schlick {
 }
 
 impl Schlick {
-    /// The approximation with reflectance `f0` at normal incidence: about 0.04 for plastic and
-    /// glass, 0.5 to 0.98 for metals.
+    /// Creates the approximation with the reflectance `f0` = F0 at normal incidence: about 0.04 for plastic
+    /// and glass, 0.5 to 0.98 for metals.
     ///
     /// # Errors
     ///
@@ -222,7 +224,7 @@ impl Schlick {
         number_in("reflectance F0", f0, "in [0, 1]", 0.0..=1.0).map(|f0| Self { f0 })
     }
 
-    /// F0, the reflectance at normal incidence.
+    /// The reflectance F0 at normal incidence.
     #[must_use]
     pub fn f0(&self) -> f32 {
         self.f0

@@ -5,15 +5,15 @@ use glam::Vec3;
 use crate::base::{Error, number_in};
 use crate::num::{Single, Vector3};
 
-/// The GGX microsurface of roughness α: how its facets are distributed and how they mask each
-/// other [Walter et al. 2007; Trowbridge & Reitz 1975].
+/// A GGX microsurface of roughness α: the distribution of its facets, and how they mask each other
+/// [Walter et al. 2007; Trowbridge & Reitz 1975].
 ///
 /// ```
 /// use stochastic_light_culling::Ggx;
 ///
 /// let (satin, matt) = (Ggx::new(0.2)?, Ggx::new(0.8)?);
 /// assert!(satin.ndf(1.0) > matt.ndf(1.0) && satin.masking(0.1) > matt.masking(0.1));
-/// // A mirror has no lobe, and what comes nearest to one has a narrow lobe.
+/// // A perfect mirror has no lobe, a nearly perfect one a narrow lobe.
 /// assert!(Ggx::new(0.0).is_err() && Ggx::new(Ggx::MIN_ROUGHNESS).is_ok());
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
@@ -23,12 +23,11 @@ pub struct Ggx {
 }
 
 impl Ggx {
-    /// The least roughness accepted, 2⁻²⁰ ≈ 9.5·10⁻⁷. Below it the lobe is narrower than the
-    /// spacing of `f32` directions.
+    /// The smallest valid roughness, 2⁻²⁰ ≈ 9.5·10⁻⁷. Below it the lobe is narrower than the spacing of `f32`
+    /// directions.
     pub const MIN_ROUGHNESS: f32 = 9.536_743e-7;
 
-    /// A microsurface with `roughness` = α; most engines show artists √α, the *perceptual*
-    /// roughness.
+    /// Creates a microsurface with `roughness` = α. Most engines show artists the *perceptual* roughness √α.
     ///
     /// # Errors
     ///
@@ -44,24 +43,24 @@ impl Ggx {
         .map(|roughness| Self { roughness })
     }
 
-    /// The microsurface of a roughness that is known to be in range.
+    /// Creates a microsurface with a roughness that is known to be valid.
     pub(super) fn of_valid(roughness: f32) -> Self {
         debug_assert!((Self::MIN_ROUGHNESS..=1.0).contains(&roughness));
         Self { roughness }
     }
 
-    /// α.
+    /// The roughness α.
     #[must_use]
     pub fn roughness(self) -> f32 {
         self.roughness
     }
 
-    /// The NDF D(cosθ_m) in sr⁻¹: the area of microfacets per solid angle of their normals
-    /// [Tokuyoshi & Harada 2017, Eq. 7].
+    /// The normal distribution function D(cosθ_m) in sr⁻¹: the area of microfacets per solid angle of their
+    /// normals [Tokuyoshi & Harada 2017, Eq. 7].
     ///
-    /// `cosine` = cosθ_m in \[−1, 1\]; zero for cosθ_m ≤ 0 and NaN. The largest value, 1/(πα²), is
-    /// at cosθ_m = 1. A rounded cosine cannot resolve a lobe narrower than about 10⁻³ radians:
-    /// where the half vector is known, use [`ndf_at`](Self::ndf_at).
+    /// `cosine` = cosθ_m is in \[−1, 1\]. D is largest at cosθ_m = 1, where it is 1/(πα²). It is zero for
+    /// cosθ_m ≤ 0 and for NaN. A rounded cosine cannot resolve a lobe narrower than about 10⁻³ radians. Where
+    /// the half vector is known, use [`ndf_at`](Self::ndf_at).
     #[must_use]
     pub fn ndf(self, cosine: f32) -> f32 {
         if cosine > 0.0 {
@@ -72,9 +71,10 @@ impl Ggx {
         }
     }
 
-    /// The NDF in sr⁻¹ at `half_vector`, of any finite length, on a surface with unit `normal`.
+    /// The normal distribution function in sr⁻¹ at `half_vector`, of any finite length, on a surface with the
+    /// unit vector `normal`.
     ///
-    /// As accurate as the vectors themselves: sin²θ_m comes from their cross product, not from
+    /// It is as accurate as the vectors are, since sin²θ_m comes from their cross product, not from
     /// 1 − cos²θ_m. Zero at and below the horizon, and for NaN.
     #[inline]
     #[must_use]
@@ -82,10 +82,10 @@ impl Ggx {
         ndf_at(self.roughness, half_vector.into(), normal.into())
     }
 
-    /// Smith's masking function G1(μ) = 2μ/(μ + √(kμ² + α²)), k = 1 − α²
+    /// Smith's masking function G1(μ) = 2μ/(μ + √(kμ² + α²)), k = 1 − α², for `cosine` = μ
     /// [Tokuyoshi & Harada 2017, Eq. 8]: the visible share of the facets that face the viewer.
     ///
-    /// In \[0, 1\] for `cosine` = μ in (0, 1]; zero for μ ≤ 0 and NaN.
+    /// In \[0, 1\] for μ in (0, 1]. Zero for μ ≤ 0 and for NaN.
     #[must_use]
     pub fn masking(self, cosine: f32) -> f32 {
         if cosine > 0.0 {
@@ -96,7 +96,7 @@ impl Ggx {
     }
 }
 
-/// The NDF for a half vector and a unit normal: see [`Ggx::ndf_at`].
+/// The NDF for a half vector and a unit normal; see [`Ggx::ndf_at`].
 #[inline(always)]
 pub(super) fn ndf_at<N: Single>(roughness: N, half_vector: Vector3<N>, normal: Vector3<N>) -> N {
     let cosine = half_vector.dot(normal);
@@ -110,7 +110,7 @@ pub(super) fn ndf_at<N: Single>(roughness: N, half_vector: Vector3<N>, normal: V
     N::select(is_above, ndf, cosine.zero())
 }
 
-/// D = α²/(π (α²c² + s²)²), c² and s² given as shares of `length_squared`.
+/// D = α²/(π (α²c² + s²)²), with c² and s² given times `length_squared`.
 #[inline(always)]
 fn ndf_of_squares<N: Single>(
     roughness: N,
@@ -120,12 +120,12 @@ fn ndf_of_squares<N: Single>(
 ) -> N {
     let alpha_squared = roughness * roughness;
     let spread = (alpha_squared * cosine_squared + sine_squared) / length_squared;
-    // At least α² but for rounding, which can be all that is left of lengths that underflow.
+    // At least α² but for rounding, which is unbounded where lengths underflow.
     let spread = spread.max(alpha_squared);
     alpha_squared / spread * FRAC_1_PI / spread
 }
 
-/// √(kμ² + α²), k = 1 − α²: the root of Smith's masking functions, in \[α, 1\].
+/// The root √(kμ² + α²), k = 1 − α², of Smith's masking functions, in \[α, 1\].
 #[inline(always)]
 pub(super) fn masking_root<N: Single>(roughness: N, cosine: N) -> N {
     let alpha = roughness;

@@ -17,9 +17,9 @@ const MAX_REFLECTED_ROUNDINGS: u16 = 96;
 
 /// The GGX microfacet lobe for light from one direction [Tokuyoshi & Harada 2017, Eq. 6].
 ///
-/// f·max(μ_o, 0) = F(ω_i·ω_h) G2(μ, μ_o) D(ω_h·n)/(4μ), with the [`Fresnel`] factor `F` and the
-/// [`MaskingShadowing`] function `G`. Empty, zero in every direction, if the light arrives from
-/// below the surface or along it.
+/// Its value is f·max(μ_o, 0) = F(ω_i·ω_h) G2(μ, μ_o) D(ω_h·n)/(4μ), with the [`Fresnel`] factor `F` and the
+/// [`MaskingShadowing`] function `G`. It is empty, that is, zero in every direction, if the light arrives
+/// from below the surface or at grazing incidence, μ ≤ 0.
 ///
 /// ```
 /// use stochastic_light_culling::{Direction, Ggx, GgxLobe, Incidence, Lobe, Schlick, glam::Vec3};
@@ -35,7 +35,7 @@ const MAX_REFLECTED_ROUNDINGS: u16 = 96;
 ///
 /// assert_eq!(gold.ggx().roughness(), 0.2);
 /// assert!((gold.incident_cosine() - 0.5_f32.sqrt()).abs() < 1e-6);
-/// // F is 1 where the reflection grazes the surface, but there it is masked.
+/// // F is 1 at grazing incidence, where it is masked.
 /// assert!(0.9 <= gold.max_reflected() && gold.max_reflected() < gold.max_fresnel());
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
@@ -45,7 +45,7 @@ pub struct GgxLobe<F = NoFresnel, G = HeightCorrelated> {
     fresnel: F,
     normal: Direction,
     incoming: Direction,
-    /// μ; zero if the light arrives from below.
+    /// μ, or zero if the light arrives from below.
     incident_cosine: f32,
     /// √(kμ² + α²)
     incident_root: f32,
@@ -53,11 +53,11 @@ pub struct GgxLobe<F = NoFresnel, G = HeightCorrelated> {
 }
 
 impl<F: Fresnel> GgxLobe<F> {
-    /// The lobe of light that arrives with `incidence`, with height-correlated masking and shadowing.
+    /// Creates the lobe of light that arrives with `incidence`, with height-correlated masking and shadowing.
     pub fn new(ggx: Ggx, fresnel: F, incidence: Incidence) -> Self {
         let Incidence { normal, incoming } = incidence;
         let cosine = exact_dot(Vector3::from(normal), incoming.into());
-        // Above the surface by less than an f32 can say is still above it.
+        // A positive cosine stays positive where it underflows.
         let incident_cosine = if cosine > 0.0 {
             (cosine as f32).clamp(f32::MIN_POSITIVE, 1.0)
         } else {
@@ -103,12 +103,12 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         }
     }
 
-    /// The microsurface.
+    /// The GGX microsurface.
     pub fn ggx(&self) -> Ggx {
         self.ggx
     }
 
-    /// How the light arrives.
+    /// The surface normal, and the direction that light comes from.
     pub fn incidence(&self) -> Incidence {
         Incidence {
             normal: self.normal,
@@ -116,54 +116,54 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         }
     }
 
-    /// n, the surface normal.
+    /// The surface normal n.
     pub fn normal(&self) -> Direction {
         self.normal
     }
 
-    /// ω_i, the direction that light comes from.
+    /// The direction ω_i that light comes from.
     pub fn incoming(&self) -> Direction {
         self.incoming
     }
 
-    /// μ = ω_i·n in \[0, 1\]; 0 means that the lobe is empty.
+    /// The cosine μ = ω_i·n in \[0, 1\] of the angle of incidence. Zero if the lobe is empty.
     pub fn incident_cosine(&self) -> f32 {
         self.incident_cosine
     }
 
-    /// F, the Fresnel factor.
+    /// The Fresnel factor F.
     pub fn fresnel(&self) -> &F {
         &self.fresnel
     }
 
-    /// F_max, the largest Fresnel factor that any direction above the surface can have, rounded up.
+    /// The largest Fresnel factor F_max of any direction above the surface, rounded up, in \[10⁻³⁰, 1\].
     ///
-    /// The half angle reaches ½ arccos μ + π/4, whose cosine is μ/√(2(1 + √(1−μ²))). The source's
-    /// √((1 − √(1−μ²))/2) cancels at grazing incidence, and √(1−μ²) at normal incidence, where the sine
-    /// of a cross product does not [Tokuyoshi & Harada 2017, supplemental, below Eq. 2].
+    /// The half angle is at most ½ arccos μ + π/4 [Tokuyoshi & Harada 2017, supplemental, below Eq. 2]. Its
+    /// cosine is computed as μ/√(2(1 + √(1−μ²))), since the source's √((1 − √(1−μ²))/2) cancels at grazing
+    /// incidence. √(1−μ²), which cancels at normal incidence, is the length of a cross product.
     pub fn max_fresnel(&self) -> f32 {
         self.lanes().max_fresnel(&[self.fresnel])
     }
 
-    /// ω_u = 2μn − ω_i, the direction of mirror reflection.
+    /// The mirror direction ω_u = 2μn − ω_i.
     ///
-    /// Computed in `f64`, since at small α an angular error φ costs a bound the share φ/(2α).
+    /// It is computed in `f64`, since for an angular error φ a bound must grow by the share φ/(2α).
     pub fn mirror_direction(&self) -> Direction {
         self.incoming.mirrored(self.normal)
     }
 
-    /// The rotation \[ω_u, ω_v, ω_w\] from the lobe's own axes to world space: ω_w = unit(ω_u × n)
-    /// is perpendicular to the plane of incidence, and ω_v = ω_w × ω_u
+    /// The rotation \[ω_u, ω_v, ω_w\] from the axes of the lobe to world space
     /// [Tokuyoshi & Harada 2017, Eq. 14].
     ///
-    /// At normal incidence, where any such frame will do, an arbitrary one.
+    /// ω_w is the unit vector along ω_u × n, perpendicular to the plane of incidence, and ω_v = ω_w × ω_u. At
+    /// normal incidence ω_w is an arbitrary perpendicular.
     pub fn rotation(&self) -> Mat3 {
         let plane = self.lanes().plane_of_incidence();
         let [u, w] = [plane.mirror, plane.across].map(Vec3::from);
         Mat3::from_cols(u, w.cross(u), w)
     }
 
-    /// The lobe with `root` in the place of √(kμ² + α²) for ω_i, and none other.
+    /// Replaces the root √(kμ² + α²) of ω_i by `root`.
     pub(super) fn with_incident_root(self, root: f32) -> Self {
         Self {
             incident_root: root,
@@ -171,7 +171,7 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         }
     }
 
-    /// The numbers that [`GgxLobes::from_quads`] reads, besides α.
+    /// The numbers that [`GgxLobes::from_quads`] takes besides α.
     #[inline]
     pub(crate) fn quads(&self) -> [Quad<f32>; 2] {
         let (n, w) = (self.normal, self.incoming);
@@ -181,7 +181,7 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         ]
     }
 
-    /// The formulas of one lobe.
+    /// The lobe as a single lane.
     #[inline(always)]
     pub(crate) fn lanes(&self) -> GgxLobes<f32> {
         GgxLobes::from_quads(self.quads(), self.ggx.roughness())
@@ -189,14 +189,15 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
 }
 
 impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
-    /// An upper bound of F·G2/G1(μ) over all directions above the surface: as F_max is of F alone,
-    /// and never above that.
+    /// An upper bound of F·G2/G1(μ) over all directions above the surface. It is never above F_max, the bound
+    /// of F alone.
     ///
-    /// F is largest where ω_o grazes the surface, and there G2 vanishes. At an angle θ_o to the normal
-    /// the half angle is at most ½(θ_i + θ_o), so F, being quasi-convex, is at most the larger of F(1)
-    /// and F(cos ½(θ_i + θ_o)), which rises with θ_o; G2 falls with it. On a segment of θ_o the product
-    /// is then at most that F at its end times that G2 at its start. For Schlick's factor with
-    /// F0 ≥ 0.02 eight segments come within 10 % of the maximum on average, and 30 % at worst.
+    /// F is largest where ω_o is at grazing, but there G2 vanishes. At an angle θ_o to the normal the half
+    /// angle is at most ½(θ_i + θ_o). So F, which is quasi-convex, is at most the larger of F(1) and F(cos
+    /// ½(θ_i + θ_o)). This larger one does not fall with θ_o, and G2 does not rise. So on a segment of θ_o
+    /// the product is at most the former at its end times the latter at its start. With eight segments the
+    /// bound is within 10 % of the maximum on average, and within 30 % at worst, for Schlick's factor with F0
+    /// ≥ 0.02.
     pub fn max_reflected(&self) -> f32 {
         self.lanes().max_reflected::<F, G>(&[self.fresnel])
     }
@@ -218,25 +219,25 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
     }
 }
 
-/// A [`GgxLobe`] in each lane, but for its Fresnel factor and its masking.
+/// A [`GgxLobe`] in each lane, without its Fresnel factor and its masking function.
 #[derive(Clone, Copy)]
 pub(crate) struct GgxLobes<N> {
     pub normal: Vector3<N>,
     pub incoming: Vector3<N>,
     /// μ
     pub incident_cosine: N,
-    /// √(kμ² + α²), the root of G1(μ)
+    /// The root √(kμ² + α²) of G1(μ)
     pub incident_root: N,
     /// α
     pub roughness: N,
 }
 
-/// Where the plane of incidence lies.
+/// The plane of incidence.
 #[derive(Clone, Copy)]
 pub(crate) struct PlaneOfIncidence<N> {
     /// ω_u
     pub mirror: Vector3<N>,
-    /// ω_w, across the plane
+    /// ω_w, perpendicular to the plane
     pub across: Vector3<N>,
     /// √(1 − μ²)
     pub sine: N,
@@ -271,11 +272,11 @@ impl<N: Single> GgxLobes<N> {
     #[inline(always)]
     pub fn plane_of_incidence(&self) -> PlaneOfIncidence<N> {
         let mirror = self.mirror_direction();
-        // ω_u × n = n × ω_i, without the rounding of ω_u.
+        // Equals ω_u × n, without the rounding of ω_u.
         let cross = self.normal.widen().cross(self.incoming.widen());
         let length = cross.length();
         let is_oblique = length.is_positive();
-        // The reciprocal of the least length there is, 2⁻²⁹⁸, is finite.
+        // Finite, since the smallest positive length is 2⁻²⁹⁸.
         let across = Vector3::narrow(cross * (length.splat(1.0) / length));
         let across = if N::is_known_false(!is_oblique) {
             across
@@ -295,23 +296,24 @@ impl<N: Single> GgxLobes<N> {
         self.incident_cosine.splat(0.5) / (self.incident_cosine + self.incident_root)
     }
 
-    /// F_max: see [`GgxLobe::max_fresnel`].
+    /// F_max; see [`GgxLobe::max_fresnel`].
     #[inline(always)]
     pub fn max_fresnel<F: Fresnel>(&self, fresnels: &[F]) -> N {
         self.max_fresnel_at(self.incident_sine(), fresnels)
     }
 
-    /// F_max, given √(1 − μ²).
+    /// F_max for √(1 − μ²) = `incident_sine`.
     #[inline(always)]
     pub fn max_fresnel_at<F: Fresnel>(&self, incident_sine: N, fresnels: &[F]) -> N {
         let smallest_cosine = self.incident_cosine / ((incident_sine + 1.0) * 2.0).sqrt();
         F::maximum_in_lanes(fresnels, smallest_cosine)
     }
 
-    /// An upper bound of F·G2/G1(μ): see [`GgxLobe::max_reflected`].
+    /// An upper bound of F·G2/G1(μ); see [`GgxLobe::max_reflected`].
     #[inline(always)]
     pub fn max_reflected<F: Fresnel, G: MaskingShadowing>(&self, fresnels: &[F]) -> N {
-        /// cosθ at the start, and cos ½θ and sin ½θ at the end: 0°, 40°, 55°, 65°, 72°, 78°, 83°, 87°, 90°.
+        /// cosθ_o at the start of a segment, and cos ½θ_o and sin ½θ_o at its end. The ends are 0°, 40°, 55°,
+        /// 65°, 72°, 78°, 83°, 87° and 90°.
         const SEGMENTS: [[f32; 3]; 8] = [
             [1.0, 0.939_692_6, 0.342_020_15],
             [0.766_044_5, 0.887_010_8, 0.461_748_63],
@@ -347,7 +349,7 @@ impl<N: Single> GgxLobes<N> {
             let reflected = F::reflectance_in_lanes(fresnels, cosine).max(head_on);
             joint = (reflected * (masking * unmasked)).max(joint);
         }
-        // Where a caller's Fresnel factor makes `most` NaN, it is passed over.
+        // The second operand is taken where a caller's Fresnel factor makes `most` NaN.
         let least = most.min(most.splat(LEAST_REFLECTED));
         let joint = most.min(joint.round_up(MAX_REFLECTED_ROUNDINGS).max(least));
         N::select(rises, joint, most)
@@ -370,7 +372,7 @@ impl<N: Single> GgxLobes<N> {
         )
     }
 
-    /// The value with another NDF, of the half vector, and another root, of μ_o.
+    /// The value with another NDF, a function of the half vector, and another root, a function of μ_o.
     #[inline(always)]
     pub(super) fn value_with<F: Fresnel, G: MaskingShadowing>(
         &self,
@@ -386,7 +388,7 @@ impl<N: Single> GgxLobes<N> {
             return zero;
         }
         let half_vector = self.incoming + outgoing;
-        // ω_i·ω_h is half the length of ω_i + ω_o.
+        // ω_i·ω_h = ½‖ω_i + ω_o‖.
         let half_angle_cosine = (half_vector.length() * 0.5).min(zero.splat(1.0));
         let value = F::reflectance_in_lanes(fresnels, half_angle_cosine)
             * ndf(half_vector)

@@ -1,17 +1,18 @@
 use crate::base::Direction;
 
-/// Where light arrives: at a surface with `normal` from `incoming`. Both point away from the surface.
+/// How light arrives at a surface: its normal, and the direction to where the light comes from. Both point
+/// away from the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Incidence {
-    /// n, the surface normal.
+    /// The surface normal n.
     pub normal: Direction,
-    /// ω_i, the direction that light comes from.
+    /// The direction ω_i that light comes from.
     pub incoming: Direction,
 }
 
 impl Incidence {
-    /// Incidence along the `normal`.
+    /// Normal incidence: light that arrives along `normal`.
     #[must_use]
     pub const fn head_on(normal: Direction) -> Self {
         Self {

@@ -8,6 +8,8 @@ use crate::num::{Single, Vector3, sqrt};
 
 /// Lambert's lobe: the same radiance in every direction, f = ρ/π.
 ///
+/// Its value is ρ/π max(ω_o·n, 0) in sr⁻¹, zero at and below the horizon.
+///
 /// ```
 /// use stochastic_light_culling::{Direction, LambertLobe, Lobe, glam::Vec3};
 ///
@@ -19,13 +21,14 @@ use crate::num::{Single, Vector3, sqrt};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LambertLobe {
     albedo: f32,
-    /// √ρ, which every bound starts from.
+    /// √ρ, the first step of every bound.
     albedo_root: f32,
     normal: Direction,
 }
 
 impl LambertLobe {
-    /// The lobe of a surface that reflects the share `albedo` = ρ of the light, around `normal`.
+    /// Creates the lobe of a surface with `normal` that reflects the share `albedo` = ρ of the light. It is
+    /// zero everywhere for ρ = 0.
     ///
     /// # Errors
     ///
@@ -38,7 +41,7 @@ impl LambertLobe {
         })
     }
 
-    /// The share of light reflected, ρ.
+    /// The albedo ρ in \[0, 1\], the share of the light that is reflected.
     #[must_use]
     pub fn albedo(&self) -> f32 {
         self.albedo
@@ -71,7 +74,7 @@ impl Lobe for LambertLobe {
     }
 }
 
-/// ρ/π max(ω_o·n, 0)
+/// The value ρ/π max(ω_o·n, 0) of [`LambertLobe`].
 #[inline(always)]
 pub(crate) fn lambert<N: Single>(albedo: N, normal: Vector3<N>, outgoing: Vector3<N>) -> N {
     albedo * FRAC_1_PI * normal.dot(outgoing).max(albedo.zero())

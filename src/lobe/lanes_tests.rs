@@ -1,4 +1,4 @@
-//! Values of lobes in lanes are, bit for bit, those of each lobe alone.
+//! Tests that values of lobes in lanes have the same bits as those of each lobe alone.
 
 use core::array::from_fn;
 
@@ -18,11 +18,11 @@ use crate::num::{
     F32Lanes, LaneTest, MAX_LANES, Matrix3, Single, Vector3, at_every_level, to_array,
 };
 
-/// A cheap generator: words that are good enough to pick inputs.
+/// A linear congruential generator, which is good enough to pick inputs.
 struct Random(u32);
 
 impl Random {
-    /// In [0, 1).
+    /// A number in [0, 1).
     fn number(&mut self) -> f32 {
         self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (self.0 >> 8) as f32 / 16_777_216.0
@@ -33,7 +33,7 @@ impl Random {
         Direction::new(Vec3::from_array(vector)).unwrap_or(Direction::X)
     }
 
-    /// Now and then along the normal, or from below.
+    /// Sometimes along the normal, or from below.
     fn incidence(&mut self) -> Incidence {
         let normal = self.direction();
         if self.number() < 0.1 {
@@ -60,7 +60,7 @@ impl MaskingShadowing for MaskedAlone {
     }
 }
 
-/// A factor that the crate has no form in lanes for.
+/// A Fresnel factor that has no form in lanes.
 #[derive(Clone, Copy)]
 struct Squared(f32);
 
@@ -71,7 +71,7 @@ impl Fresnel for Squared {
     }
 }
 
-/// A vector of `part` of what `number` gives for each light.
+/// What `number` returns for the lights from `start` on, in lanes.
 fn gathered<S: Simd>(simd: S, start: usize, number: impl Fn(usize) -> f32) -> F32Lanes<S> {
     F32Lanes::new(simd, 0.0).gather(|i| number(start + i))
 }
@@ -88,10 +88,10 @@ fn gathered_vector<S: Simd>(
     )
 }
 
-/// Lobes and directions, and their values in lanes from one index on.
+/// Lobes, directions, and a function that computes the values in lanes.
 struct Values<L, V>([L; MAX_LANES], [Vec3; MAX_LANES], V);
 
-/// A function of the lobes from `start` on, in lanes.
+/// Computes the values of the lobes from `start` on, in lanes.
 trait InLanes<L> {
     fn values<S: Simd>(
         &self,

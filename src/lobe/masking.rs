@@ -2,30 +2,30 @@ use super::Ggx;
 use super::ggx::masking_root;
 use crate::num::Single;
 
-/// Smith's masking-shadowing function G2: the share of facets that are both lit and seen.
+/// Smith's masking-shadowing function G2: the share of facets that are both lit and visible.
 ///
-/// A type parameter, so that the form an engine shades with is the form its lights are culled by.
-/// Every form is at most G1(μ_i), grows with μ_o and falls with its root, which the bounds rely on.
+/// It is a type parameter of a lobe, so that lights are culled with the form that an engine shades with. The
+/// bounds rely on this: every form is at most G1(μ_i), grows with μ_o, and falls with the root of ω_o.
 ///
 /// ```
 /// use stochastic_light_culling::{Ggx, HeightCorrelated, MaskingShadowing, Separable};
 ///
 /// let (rough, lit, seen) = (Ggx::new(0.8)?, 0.3, 0.2);
 /// let together = HeightCorrelated::masking_shadowing(rough, lit, seen);
-/// let by_chance = Separable::masking_shadowing(rough, lit, seen);
-/// assert!(by_chance < together && together < rough.masking(lit));
+/// let independent = Separable::masking_shadowing(rough, lit, seen);
+/// assert!(independent < together && together < rough.masking(lit));
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 pub trait MaskingShadowing: Copy + 'static {
     /// Whether G2 is nowhere above the [height-correlated](HeightCorrelated) form. The table of the
-    /// [tight bound](crate::Tight) holds for such forms alone; for others that strategy gives the
+    /// [tight bound](crate::Tight) is valid only for such forms. For others that strategy returns the
     /// [triaxial bound](crate::Triaxial).
     const IS_AT_MOST_HEIGHT_CORRELATED: bool = false;
 
-    /// G2(μ_i, μ_o)/(4μ_i): what a microfacet BRDF times μ_o has besides F and D.
+    /// G2(μ_i, μ_o)/(4μ_i): the factor of a microfacet BRDF times μ_o besides F and D.
     ///
-    /// Finite for cosines in (0, 1], however close to grazing. The `root`s are √(kμ² + α²) of the
-    /// two cosines; of a direction (x, y, z) over a grain, √(α_x²x² + α_y²y² + z²).
+    /// The cosines are in (0, 1]; the result must be finite even close to grazing. The roots are √(kμ² + α²)
+    /// of the two cosines, or √(α_x²x² + α_y²y² + z²) of a direction (x, y, z) on an anisotropic surface.
     ///
     /// ```
     /// use stochastic_light_culling::MaskingShadowing;
@@ -48,7 +48,7 @@ pub trait MaskingShadowing: Copy + 'static {
         outgoing_root: f32,
     ) -> f32;
 
-    /// [`over_four_incident_cosines`](Self::over_four_incident_cosines) in each lane.
+    /// Computes [`over_four_incident_cosines`](Self::over_four_incident_cosines) in each lane.
     #[doc(hidden)]
     #[inline(always)]
     fn over_four_incident_cosines_in_lanes<N: Single>(
@@ -82,7 +82,7 @@ pub trait MaskingShadowing: Copy + 'static {
         )
     }
 
-    /// G2 in \[0, 1\], for the cosines ω_i·n and ω_o·n; zero if either is not positive.
+    /// G2 in \[0, 1\] for the cosines μ_i = ω_i·n and μ_o = ω_o·n. Zero if either is not positive, or NaN.
     #[must_use]
     fn masking_shadowing(ggx: Ggx, incident_cosine: f32, outgoing_cosine: f32) -> f32 {
         if !(incident_cosine > 0.0 && outgoing_cosine > 0.0) {
@@ -98,7 +98,7 @@ pub trait MaskingShadowing: Copy + 'static {
     }
 }
 
-/// Facets of one height are masked and shadowed together
+/// Height-correlated masking and shadowing,
 /// G2 = 2μ_iμ_o/(μ_o√(kμ_i²+α²) + μ_i√(kμ_o²+α²)) [Heitz 2014, Eq. 99].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -130,12 +130,12 @@ impl MaskingShadowing for HeightCorrelated {
         outgoing_root: N,
     ) -> N {
         let sum = outgoing_cosine * incident_root + incident_cosine * outgoing_root;
-        // Both terms can underflow at once, with the numerator far behind.
+        // Both terms can underflow at once, where the numerator does not.
         outgoing_cosine * 0.5 / sum.max(sum.splat(f32::MIN_POSITIVE))
     }
 }
 
-/// Masking and shadowing as if independent, G2 = G1(μ_i) G1(μ_o) [Walter et al. 2007, Eq. 23].
+/// Independent masking and shadowing, G2 = G1(μ_i) G1(μ_o) [Walter et al. 2007, Eq. 23].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Separable;

@@ -1,4 +1,4 @@
-//! What a surface reflects: microfacet terms, Fresnel factors, and the lobes made of them.
+//! Lobes: what a surface reflects. Microfacet terms, Fresnel factors, and the lobes that they make.
 
 mod anisotropic_ggx;
 mod anisotropic_ggx_lobe;
@@ -34,24 +34,23 @@ use glam::Vec3;
 
 use crate::base::Direction;
 
-/// The light that a point sends out for light that came in from one fixed direction.
+/// The light that a point reflects, as a function of the outgoing direction. The incoming direction is fixed.
 ///
-/// Everything after this module sees a lobe only through this trait and its bound
-/// ([`Bounded`](crate::Bounded)).
+/// The steps after this one know a lobe only by this trait and by its bound ([`Bounded`](crate::Bounded)).
 pub trait Lobe {
-    /// f(ω_i, ω_o)·max(ω_o·n, 0) in sr⁻¹, for the unit direction `outgoing` = ω_o that leaves the
-    /// surface.
+    /// The value f(ω_i, ω_o)·max(ω_o·n, 0) in sr⁻¹ for the unit vector `outgoing` = ω_o, which points away
+    /// from the surface.
     ///
-    /// Finite and not negative; zero at and below the horizon, where the lobe has one. Never NaN.
+    /// Finite, not negative and never NaN. Zero at and below the horizon, if the lobe has one.
     fn value(&self, outgoing: Vec3) -> f32;
 
-    /// The normal of the surface below whose horizon the lobe is zero; `None` if it has none.
+    /// The normal of the surface below whose horizon the lobe is zero. `None` if the lobe has no horizon.
     fn horizon_normal(&self) -> Option<Direction> {
         None
     }
 
-    /// Whether the lobe is known to be zero in every direction. A batch leaves such lights out before it
-    /// computes their bounds.
+    /// Whether the lobe is known to be zero in every direction. A batch drops such lights before it computes
+    /// their bounds.
     fn is_empty(&self) -> bool {
         false
     }

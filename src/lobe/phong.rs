@@ -8,13 +8,13 @@ use crate::num::{self, Real, Single, Vector3, exact_dot};
 
 /// Phong's lobe: a power of the cosine to the mirror direction [Phong 1975].
 ///
-/// f·max(μ_o, 0) = ρ (n+1)/(2π) max(ω_o·ω_u, 0)ⁿ above the surface and zero below it, for the exponent n
-/// and the mirror direction ω_u. The power stands for all of the left side, its cosine included. It
-/// integrates to 2π/(n+1) over the hemisphere about ω_u, so of the light that arrives the share ρ is
-/// reflected, less what the horizon cuts off: no energy is gained. Not reciprocal, as Phong's model is not.
+/// Its value is f·max(μ_o, 0) = ρ (n+1)/(2π) max(ω_o·ω_u, 0)ⁿ above the surface and zero below it, with the
+/// exponent n and the mirror direction ω_u. The power replaces the whole left side, cosine included. It
+/// integrates to 2π/(n+1) over the hemisphere around ω_u. So the share ρ of the incoming light is reflected,
+/// less what the horizon cuts off, and no energy is gained. Like Phong's model, the lobe is not reciprocal.
 ///
-/// The lobe of the virtual lights of [Dachsbacher & Stamminger 2006]. Empty, zero in every direction, if the
-/// light arrives from below the surface or along it.
+/// [Dachsbacher & Stamminger 2006] use it for virtual lights. It is empty, that is, zero in every direction,
+/// if the light arrives from below the surface or at grazing incidence.
 ///
 /// ```
 /// use stochastic_light_culling::{Bounded, Direction, Incidence, Lobe, PhongLobe, glam::Vec3};
@@ -26,11 +26,11 @@ use crate::num::{self, Real, Single, Vector3, exact_dot};
 /// assert!((peak - 0.5 * 41.0 / std::f32::consts::TAU).abs() < 1e-4);
 /// assert!(plastic.value(Vec3::Z) < 1e-5 * peak);
 ///
-/// // A slim ellipsoid from the light along the mirror direction.
+/// // Its bound is a slim ellipsoid along the mirror direction.
 /// let semi_axes = plastic.unit_bound().semi_axes();
 /// assert!(semi_axes.x > 3.0 * semi_axes.y);
 ///
-/// // A spotlight, with no surface to cut it.
+/// // A spotlight has no surface that cuts its lobe.
 /// let spot = PhongLobe::about(1.0, 10.0, Direction::X)?;
 /// assert!(spot.incoming().is_none() && spot.exponent() < PhongLobe::MAX_EXPONENT);
 /// # Ok::<(), stochastic_light_culling::Error>(())
@@ -46,12 +46,11 @@ pub struct PhongLobe {
 }
 
 impl PhongLobe {
-    /// The greatest exponent, 2²⁰: a lobe a tenth of a degree wide, of which directions in `f32` still
-    /// tell the inside.
+    /// The largest exponent, 2²⁰. Its lobe is a tenth of a degree wide, which `f32` directions still resolve.
     pub const MAX_EXPONENT: f32 = 1_048_576.0;
 
-    /// The lobe of a surface that reflects the share `albedo` = ρ of light that arrives with `incidence`, with
-    /// `exponent` = n.
+    /// Creates the lobe with `exponent` = n of a surface that reflects the share `albedo` = ρ of the light
+    /// that arrives with `incidence`.
     ///
     /// # Errors
     ///
@@ -74,8 +73,8 @@ impl PhongLobe {
         })
     }
 
-    /// The same lobe about any `axis`, without a surface that cuts it: a spotlight that sends the share
-    /// `albedo` of its flux. Zero from 90° off the axis on.
+    /// Creates the same lobe around any `axis`, without a surface that cuts it: a spotlight that emits the
+    /// share `albedo` of its flux. It is zero from 90° off the axis on.
     ///
     /// # Errors
     ///
@@ -84,46 +83,47 @@ impl PhongLobe {
         let mirrored = Self::new(albedo, exponent, Incidence::head_on(axis))?;
         Ok(Self {
             incoming: None,
-            // Not mirrored at itself, which is a rounding away.
+            // Unchanged: mirrored at itself it would be rounded.
             axis,
             ..mirrored
         })
     }
 
-    /// The share of light reflected, ρ, but for what the horizon cuts off.
+    /// The albedo ρ in \[0, 1\]: the share of the light that is reflected, were nothing cut off by the
+    /// horizon.
     #[must_use]
     pub fn albedo(&self) -> f32 {
         self.albedo
     }
 
-    /// n, the exponent.
+    /// The exponent n.
     #[must_use]
     pub fn exponent(&self) -> f32 {
         self.exponent
     }
 
-    /// The surface normal; of a lobe [about](Self::about) an axis, that axis.
+    /// The surface normal, or the axis of a lobe made by [`about`](Self::about).
     #[must_use]
     pub fn normal(&self) -> Direction {
         self.normal
     }
 
-    /// ω_i, the direction that light comes from; `None` of a lobe [about](Self::about) an axis.
+    /// The direction ω_i that light comes from. `None` for a lobe made by [`about`](Self::about).
     #[must_use]
     pub fn incoming(&self) -> Option<Direction> {
         self.incoming
     }
 
-    /// ω_u, the direction in which the lobe is largest.
+    /// The axis ω_u: the mirror direction, in which the lobe is largest.
     #[must_use]
     pub fn axis(&self) -> Direction {
         self.axis
     }
 
-    /// √(ρ(n+1)/(2π)), the radius of the unit isosurface along the axis; zero if the lobe is empty.
+    /// The radius √(ρ(n+1)/(2π)) of the unit isosurface along the axis. Zero if the lobe is empty.
     pub(crate) fn unit_reach(&self) -> f32 {
         if self.is_lit {
-            // Apart, since the product with a subnormal albedo would be off by more than its root is.
+            // Two roots, since the product with a subnormal albedo would lose digits.
             num::sqrt(self.albedo) * num::sqrt((self.exponent + 1.0) / TAU)
         } else {
             0.0
@@ -153,7 +153,7 @@ pub(crate) struct PhongLobes<N> {
     /// ω_u
     pub axis: Vector3<N>,
     pub exponent: N,
-    /// ρ; zero of an empty lobe
+    /// ρ, or zero for an empty lobe
     pub albedo: N,
 }
 
@@ -170,8 +170,11 @@ impl PhongLobe {
 }
 
 impl<N: Single> PhongLobes<N> {
-    /// The cosine is 1 − ½‖ω_o − ω_u‖² in `f64`, since a power multiplies by n the error of a cosine; and
-    /// what its rounding to `f32` takes is given back afterwards, (1 + x)ⁿ = 1 + nx + ½n²x² + …, nx < 2⁻⁵.
+    /// f·max(μ_o, 0) towards `outgoing`.
+    ///
+    /// The cosine is 1 − ½‖ω_o − ω_u‖² in `f64`, since the power multiplies its relative error by n. The
+    /// power is taken of the cosine rounded to `f32`. The relative rounding error x of that cosine is then
+    /// made up for by the factor (1 + x)ⁿ = 1 + nx + ½n²x² + …, nx < 2⁻⁵.
     #[inline(always)]
     pub fn value(&self, outgoing: Vector3<N>) -> N {
         let zero = self.albedo.zero();

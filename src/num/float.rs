@@ -1,4 +1,4 @@
-//! Floating-point functions of the backend, `std` or `libm`. Only this file names one.
+//! Floating-point functions of the backend, `std` or `libm`. No other file names a backend.
 
 #[cfg(not(any(feature = "std", feature = "libm")))]
 compile_error!(
@@ -27,7 +27,7 @@ pub(crate) fn sqrt_f64(x: f64) -> f64 {
     root
 }
 
-/// tan x, to the accuracy of the backend.
+/// tan x, with the accuracy of the backend.
 pub(crate) fn tan(x: f32) -> f32 {
     #[cfg(feature = "std")]
     #[expect(clippy::disallowed_methods, reason = "this is the backend")]
@@ -37,7 +37,7 @@ pub(crate) fn tan(x: f32) -> f32 {
     tangent
 }
 
-/// x^y for x > 0, to the accuracy of the backend.
+/// x^y for x > 0, with the accuracy of the backend.
 pub(crate) fn power(x: f32, y: f32) -> f32 {
     #[cfg(feature = "std")]
     #[expect(clippy::disallowed_methods, reason = "this is the backend")]

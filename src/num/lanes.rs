@@ -9,14 +9,14 @@ use fearless_simd::{
 
 use super::real::{Quad, Real, Single};
 
-/// Lanes of the widest vectors there are.
+/// The number of lanes of the widest vectors.
 pub(crate) const MAX_LANES: usize = 16;
 
 /// An `f32` in each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct F32Lanes<S: Simd>(pub S::f32s);
 
-/// An `f64` in each lane: one vector for the lower half of the lanes, and one for the upper.
+/// An `f64` in each lane: one vector for the lower half of the lanes, and one for the upper half.
 #[derive(Clone, Copy, Debug)]
 pub struct F64Lanes<S: Simd> {
     low: S::f64s,
@@ -24,13 +24,14 @@ pub struct F64Lanes<S: Simd> {
 }
 
 impl<S: Simd> F32Lanes<S> {
+    /// Puts `value` into each lane.
     #[inline(always)]
     pub fn new(simd: S, value: f32) -> Self {
         Self(S::f32s::splat(simd, value))
     }
 }
 
-/// Operators with as many lanes, and with one number for all of them.
+/// Implements operators with another vector, and with one number for all lanes.
 macro_rules! operators {
     ($($operator:ident $function:ident $sign:tt,)*) => {$(
         impl<S: Simd> $operator for F32Lanes<S> {
@@ -105,8 +106,8 @@ impl<S: Simd> Neg for F64Lanes<S> {
     }
 }
 
-/// Whether the vector instructions for max and min give their second operand for NaN, as [`Real`] wants
-/// it. On other processors than x86 they give NaN.
+/// Whether the vector instructions for max and min return their second operand for NaN, as [`Real`] requires.
+/// On processors other than x86 they return NaN.
 const NATIVE_MAX_PASSES_NAN_OVER: bool = cfg!(any(target_arch = "x86", target_arch = "x86_64"));
 
 #[inline(always)]
@@ -368,11 +369,11 @@ impl<S: Simd> Single for F32Lanes<S> {
     }
 }
 
-/// Transposes quads that are held light by light: one vector for each of their four numbers.
+/// Transposes one quad per lane into one vector for each of the four numbers.
 #[inline(always)]
 pub(crate) fn load_quads<S: Simd>(simd: S, quads: &[Quad<f32>]) -> Quad<F32Lanes<S>> {
     let (numbers, lanes) = (quads.as_flattened(), S::f32s::LEN);
-    // No array is mapped: the compiler makes that a call, through memory.
+    // Not `array::map`, which the compiler makes a call through memory.
     let a = S::f32s::from_slice(simd, &numbers[..lanes]);
     let b = S::f32s::from_slice(simd, &numbers[lanes..2 * lanes]);
     let c = S::f32s::from_slice(simd, &numbers[2 * lanes..3 * lanes]);
@@ -395,11 +396,12 @@ pub(crate) mod tests {
 
     use super::*;
 
-    /// A test that runs with vectors of every width that the processor has.
+    /// A test that runs with vectors of every width that the processor supports.
     pub(crate) trait LaneTest {
         fn run<S: Simd>(&self, simd: S);
     }
 
+    /// Runs `test` at every level of vector instructions that the processor supports.
     pub(crate) fn at_every_level(test: &impl LaneTest) {
         let widest = Level::try_detect().unwrap_or(Level::baseline());
         dispatch!(widest, simd => test.run(simd));
@@ -414,14 +416,14 @@ pub(crate) mod tests {
         }
     }
 
-    /// The numbers in the lanes.
+    /// Stores the numbers of the lanes; those past the last lane are zero.
     pub(crate) fn to_array<S: Simd>(vector: F32Lanes<S>) -> [f32; MAX_LANES] {
         let mut lanes = [0.0; MAX_LANES];
         vector.0.store_slice(&mut lanes[..S::f32s::LEN]);
         lanes
     }
 
-    /// Ordinary numbers and those at which operations differ.
+    /// Ordinary numbers, and edge cases at which implementations differ.
     const NUMBERS: [f32; MAX_LANES] = [
         0.0,
         -0.0,
@@ -441,14 +443,14 @@ pub(crate) mod tests {
         1.000_000_1,
     ];
 
-    /// Equal bits, or NaN both.
+    /// Whether both have the same bits, or both are NaN.
     fn is_same(a: f32, b: f32) -> bool {
         a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
     }
 
     type Binary<N> = fn(N, N) -> N;
 
-    /// Operations of which all numbers are to be the same in lanes as alone.
+    /// Operations that must give the same bits in lanes as for scalars.
     fn operations<N: Single>() -> [(&'static str, Binary<N>); 20] {
         fn selected<N: Single>(mask: N::Mask, a: N, b: N) -> N {
             N::select(mask, a, b)

@@ -1,19 +1,19 @@
 //! The arithmetic that all formulas are written in.
 //!
 //! A formula is one function, generic over [`Real`]. With an `f32` or an `f64` it computes one value; with
-//! [`F32Lanes`] or [`F64Lanes`] it computes as many as a vector register holds. The operations and their
-//! order are the same, and none is contracted to a fused one, so both give the same bits.
+//! [`F32Lanes`] or [`F64Lanes`] it computes one value in each lane of a vector register. The operations and
+//! their order are the same, and none are fused. So both give the same bits.
 //!
 //! # NaN
 //!
-//! The same for every implementor and on every processor:
+//! Every implementor follows the same rules on every processor:
 //!
 //! - `a.max(b)` and `a.min(b)` are `b` if either operand is NaN. Write the operand that is never NaN last.
-//! - Comparisons with NaN are false, so `!(a > b)` is true of NaN.
-//! - A NaN never stands for a flag; a [`Mask`] does.
+//! - Comparisons with NaN are false, so `!(a > b)` is true for NaN.
+//! - A flag is a [`Mask`], never a NaN.
 //!
-//! On an `f32` or an `f64` itself, outside of generic code, `max` and `min` are the inherent functions of the
-//! standard library, which give the operand that is not NaN.
+//! Outside of generic code, `max` and `min` of an `f32` or an `f64` are the inherent functions of the
+//! standard library, which return the operand that is not NaN.
 
 mod float;
 #[cfg(feature = "cull")]

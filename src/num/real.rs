@@ -3,12 +3,12 @@ use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use super::rounding::round_up;
 
-/// One truth value for each lane: `bool` for a scalar.
+/// A truth value for each lane: `bool` for a scalar.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {}
 
 impl<M: Copy + BitAnd<Output = M> + BitOr<Output = M> + Not<Output = M>> Mask for M {}
 
-/// Four numbers of one light, which are copied and transposed as one vector.
+/// Four numbers of one light. They are copied and transposed as one vector.
 pub type Quad<N> = [N; 4];
 
 /// A real number: an `f32` or an `f64`, or one in each lane of a vector.
@@ -33,11 +33,13 @@ pub trait Real:
     /// The result of a comparison.
     type Mask: Mask;
 
-    /// `value` in as many lanes as `self` has.
+    /// Puts `value` into as many lanes as `self` has.
     fn splat(self, value: Self::Element) -> Self;
+    /// |self|
     fn abs(self) -> Self;
     /// √self, correctly rounded.
     fn sqrt(self) -> Self;
+    /// |self| with the sign of `sign`.
     fn copysign(self, sign: Self) -> Self;
 
     /// The greater operand; `other` if either is NaN.
@@ -51,16 +53,17 @@ pub trait Real:
     fn le(self, other: Self) -> Self::Mask;
     /// self = other
     fn eq(self, other: Self) -> Self::Mask;
+    /// Whether the number is neither infinite nor NaN.
     fn is_finite(self) -> Self::Mask;
 
     /// `yes` where `mask` holds, `no` elsewhere.
     ///
-    /// Values that share a mask are selected together: for a scalar that is one branch, where several
-    /// single selects become a branch and a blend.
+    /// Select values that share a mask together: a scalar then takes one branch, where several single selects
+    /// become a branch and a blend.
     fn select_all<const K: usize>(mask: Self::Mask, yes: [Self; K], no: [Self; K]) -> [Self; K];
 
-    /// Whether `mask` is known to hold in no lane, so that a scalar can leave out what a `select` would
-    /// discard. A vector is not asked: always false.
+    /// Whether `mask` is known to hold in no lane, so that a scalar can skip what a `select` would discard.
+    /// Always false for a vector.
     fn is_known_false(mask: Self::Mask) -> bool;
 
     /// `yes` where `mask` holds, `no` elsewhere.
@@ -70,6 +73,7 @@ pub trait Real:
         one
     }
 
+    /// Zero in as many lanes as `self` has.
     #[inline(always)]
     fn zero(self) -> Self {
         self.splat(Self::Element::default())
@@ -91,27 +95,28 @@ pub trait Real:
 
 /// A [`Real`] in single precision: an `f32`, or one in each lane.
 pub trait Single: Real<Element = f32> {
-    /// As many numbers in double precision, which share the masks.
+    /// As many lanes in double precision, with the same masks.
     type Double: Double<Mask = Self::Mask>;
 
+    /// Converts to double precision, exactly.
     fn widen(self) -> Self::Double;
     /// Rounds to single precision.
     fn narrow(double: Self::Double) -> Self;
 
-    /// The numbers at the start of `lanes`, one for each lane of `self`.
+    /// Loads one number for each lane of `self` from the start of `lanes`, which must be long enough.
     fn load(self, lanes: &[f32]) -> Self;
 
-    /// The numbers that `function` gives for the index of each lane of `self`.
+    /// Collects what `function` returns for the index of each lane of `self`.
     fn gather(self, function: impl FnMut(usize) -> f32) -> Self;
 
-    /// Applies `function` to the index of each lane and its numbers: for what has no form in lanes, such as
-    /// a caller's own function.
+    /// Applies `function` to the index and the numbers of each lane: for what cannot be computed in lanes,
+    /// such as a function of the caller.
     fn per_lane<const K: usize>(
         numbers: [Self; K],
         function: impl FnMut(usize, [f32; K]) -> f32,
     ) -> Self;
 
-    /// Applies `function` to four numbers of each lane and its bit of `mask`; the result is two quads.
+    /// Applies `function` to four numbers and the bit of `mask` of each lane, and collects its two quads.
     fn per_lane_quads(
         numbers: Quad<Self>,
         mask: Self::Mask,
@@ -130,7 +135,7 @@ pub trait Single: Real<Element = f32> {
         self.splat(1.0) / self
     }
 
-    /// [`round_up`] in each lane.
+    /// Applies [`round_up`] in each lane.
     #[inline(always)]
     fn round_up(self, roundings: u16) -> Self {
         self * round_up(1.0, roundings)

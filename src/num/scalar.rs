@@ -27,7 +27,7 @@ macro_rules! real {
                 Self::copysign(self, sign)
             }
 
-            // One instruction, unlike the inherent function.
+            // A single instruction, unlike the inherent function.
             #[inline(always)]
             fn max(self, other: Self) -> Self {
                 if self > other { self } else { other }

@@ -1,4 +1,4 @@
-//! Vectors and matrices of three, over any [`Real`].
+//! 3-vectors and 3×3 matrices over any [`Real`].
 
 use core::ops::{Add, Mul, Neg, Sub};
 
@@ -6,7 +6,7 @@ use glam::{Mat3, Vec3};
 
 use super::real::{Double, Real, Single};
 
-/// Three components, each of one number or of one in each lane. Operations and their order are glam's.
+/// A 3-vector. Its operations and their order are those of glam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vector3<N> {
     pub x: N,
@@ -20,13 +20,13 @@ impl<N: Real> Vector3<N> {
         Self { x, y, z }
     }
 
-    /// `v` in as many lanes as `like` has.
+    /// Puts `v` into as many lanes as `like` has.
     #[inline(always)]
     pub fn splat(like: N, v: Vector3<N::Element>) -> Self {
         Self::new(like.splat(v.x), like.splat(v.y), like.splat(v.z))
     }
 
-    /// Zero in as many lanes as `like` has.
+    /// The zero vector in as many lanes as `like` has.
     #[inline(always)]
     pub fn zero(like: N) -> Self {
         let zero = like.zero();
@@ -44,7 +44,7 @@ impl<N: Real> Vector3<N> {
         Self::new(self.x.abs(), self.y.abs(), self.z.abs())
     }
 
-    /// The product component by component.
+    /// The componentwise product.
     #[inline(always)]
     pub fn times(self, other: Self) -> Self {
         Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
@@ -137,7 +137,8 @@ impl<N: Single> Vector3<N> {
         )
     }
 
-    /// Two unit vectors, perpendicular to this one and to each other: [`Vec3::any_orthonormal_pair`].
+    /// Two unit vectors that are perpendicular to this unit vector and to each other, as
+    /// [`Vec3::any_orthonormal_pair`] computes them.
     #[inline(always)]
     pub fn any_orthonormal_pair(self) -> (Self, Self) {
         let Self { x, y, z } = self;
@@ -208,7 +209,7 @@ impl From<Vector3<f32>> for Vec3 {
     }
 }
 
-/// Three columns.
+/// A 3×3 matrix, by its columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrix3<N> {
     pub x: Vector3<N>,
@@ -222,7 +223,7 @@ impl<N: Real> Matrix3<N> {
         Self { x, y, z }
     }
 
-    /// `m` in as many lanes as `like` has.
+    /// Puts `m` into as many lanes as `like` has.
     #[inline(always)]
     pub fn splat(like: N, m: Matrix3<N::Element>) -> Self {
         Self::new(
@@ -284,14 +285,14 @@ impl From<Matrix3<f32>> for Mat3 {
     }
 }
 
-/// a·b with the rounding of `f64`, in which products of `f32` numbers are exact.
+/// a·b in `f64`, in which the products are exact and the sums are rounded.
 #[inline]
 pub(crate) fn dot_f64(a: Vec3, b: Vec3) -> f64 {
     Vector3::from(a).widen().dot(Vector3::from(b).widen())
 }
 
-/// a·b, exact but for one rounding to `f64`, however far its terms cancel: what the sums lose is added
-/// at the end.
+/// a·b, exact but for one rounding to `f64`, however much its terms cancel. The rounding errors of the sums
+/// are added at the end.
 #[inline(always)]
 pub(crate) fn exact_dot<N: Single>(a: Vector3<N>, b: Vector3<N>) -> N::Double {
     let products = a.widen().times(b.widen());
@@ -300,7 +301,7 @@ pub(crate) fn exact_dot<N: Single>(a: Vector3<N>, b: Vector3<N>) -> N::Double {
     sum + (first + second)
 }
 
-/// a + b in `f64`, and the error of its rounding [Knuth 1969, 4.2.2].
+/// a + b in `f64`, and its rounding error [Knuth 1969, Sec. 4.2.2].
 #[inline(always)]
 fn sum_with_error<D: Double>(a: D, b: D) -> (D, D) {
     let sum = a + b;
