@@ -35,7 +35,7 @@ pub(super) fn store<S: Simd>(lanes: &mut Lanes, part: usize, vector: F32Lanes<S>
 /// The same tile in each lane.
 #[inline(always)]
 pub(super) fn splat_tile<S: Simd>(simd: S, tile: TileBounds<f32>) -> TileBounds<F32Lanes<S>> {
-    let splat = |[least, most]: [f32; 2]| [F32Lanes::new(simd, least), F32Lanes::new(simd, most)];
+    let splat = |[min, max]: [f32; 2]| [F32Lanes::new(simd, min), F32Lanes::new(simd, max)];
     TileBounds {
         across: splat(tile.across),
         down: splat(tile.down),

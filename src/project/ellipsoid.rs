@@ -75,8 +75,8 @@ const LEAST_SEMI_AXIS: f32 = 1e-30;
 /// let ellipsoid = Ellipsoid::new(Vec3::X, Mat3::IDENTITY, Vec3::new(1.0, 2.0, 4.0))?;
 /// let s = stretch_matrix(&ellipsoid, &camera);
 /// let both = stretch_rotation(s) * s;
-/// let stretch = ellipsoid.project(&camera).expect("not empty");
-/// assert!((both * Vec3::ONE - stretch.matrix() * Vec3::ONE).length() < 1e-4);
+/// let projected = ellipsoid.project(&camera).expect("not empty");
+/// assert!((both * Vec3::ONE - projected.matrix() * Vec3::ONE).length() < 1e-4);
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[must_use]
@@ -115,8 +115,8 @@ pub fn stretch_rotation(stretch: Mat3) -> Mat3 {
 ///
 /// let camera = Camera::look_at(Vec3::ZERO, -Vec3::Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
 /// let ellipsoid = Ellipsoid::new(Vec3::new(0.0, 0.0, -8.0), Mat3::IDENTITY, Vec3::new(1.0, 2.0, 4.0))?;
-/// let stretch = ellipsoid.project(&camera).expect("not empty");
-/// assert!((stretch.center() - Vec3::new(0.0, 0.0, 2.0)).length() < 1e-4);
+/// let projected = ellipsoid.project(&camera).expect("not empty");
+/// assert!((projected.center() - Vec3::new(0.0, 0.0, 2.0)).length() < 1e-4);
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

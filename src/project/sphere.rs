@@ -26,9 +26,9 @@ const LEAST_RADIUS: f32 = 1e-18;
 ///
 /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
 /// let sphere = Sphere::new(Vec3::new(0.0, 0.0, -8.0), 3.0)?;
-/// let seen = sphere.project(&camera).expect("not empty");
-/// assert_eq!(seen.center(), Vec3::new(0.0, 0.0, 8.0));
-/// assert!(9.0 < seen.radius_squared() && seen.radius_squared() < 9.001);
+/// let projected = sphere.project(&camera).expect("not empty");
+/// assert_eq!(projected.center(), Vec3::new(0.0, 0.0, 8.0));
+/// assert!((9.0..9.001).contains(&projected.radius_squared()));
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -39,7 +39,7 @@ impl TileBounds<f32> {
 impl<N: Single> TileBounds<N> {
     #[inline(always)]
     pub fn widen(self) -> TileBounds<N::Double> {
-        let widen = |[least, most]: [N; 2]| [least.widen(), most.widen()];
+        let widen = |[min, max]: [N; 2]| [min.widen(), max.widen()];
         TileBounds {
             across: widen(self.across),
             down: widen(self.down),

@@ -108,10 +108,10 @@ impl ProjectedHalfSpace {
         let [a, b] = slopes.map(|corner| self.normal() * corner);
         let farthest = a.max(b);
         let at_one = farthest.x + farthest.y + farthest.z + self.rounding_at_one();
-        let most = (at_one * depths.near()).max(at_one * depths.far());
+        let max = (at_one * depths.near()).max(at_one * depths.far());
         // Not `>=`, which would be false if an overflow makes NaN.
         !matches!(
-            most.partial_cmp(&self.offset()),
+            max.partial_cmp(&self.offset()),
             Some(core::cmp::Ordering::Less)
         )
     }

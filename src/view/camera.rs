@@ -423,7 +423,7 @@ fn slopes(projection: Mat4) -> Result<(f32, Vec2, Vec2), Error> {
     // A transposed matrix has element (2, 3) here, which follows from the near plane.
     if weight.is_nan() || (weight - 1.0).abs() > LAST_ROW_TOLERANCE {
         let valid =
-            "its last row must be (0, 0, ±1, 0), as it is if stored by columns; element (3, 2)";
+            "its last row must be (0, 0, ±1, 0), and it must be stored by columns; element (3, 2)";
         return Err(refused(w.z, valid));
     }
     // Where NDC y points down, the first row of pixels is at NDC y = −1. Negating both changes nothing.
