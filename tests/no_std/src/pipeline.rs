@@ -1,8 +1,8 @@
 //! From a lobe to the tiles that it touches.
 
-use stochastic_light_culling::{Seed, Incidence, 
-    Camera, Conductor, DepthInterval, Direction, Error, Ggx, GgxLobe, Roulette, ProjectedEllipsoid, TileGrid,
-    Vpl, glam::Vec3,
+use stochastic_light_culling::{
+    Camera, Conductor, DepthInterval, Direction, Error, Ggx, GgxLobe, Incidence,
+    ProjectedEllipsoid, Roulette, Seed, TileGrid, Vpl, glam::Vec3,
 };
 
 pub const SIZE: [u32; 2] = [128, 128];
@@ -24,7 +24,14 @@ pub fn depths() -> Result<DepthInterval, Error> {
 pub fn stretch(light: u32) -> Result<Option<ProjectedEllipsoid>, Error> {
     let incoming = Direction::new(Vec3::new(-1.0, 1.0, 0.0))?;
     let gold = Conductor::new(0.16, 3.5)?;
-    let lobe = GgxLobe::new(Ggx::new(0.1)?, gold, Incidence { normal: Direction::Y, incoming });
+    let lobe = GgxLobe::new(
+        Ggx::new(0.1)?,
+        gold,
+        Incidence {
+            normal: Direction::Y,
+            incoming,
+        },
+    );
     let light_there = Vpl::new(Vec3::ZERO, 2.0, lobe)?;
     let bound = light_there.bound(&Roulette::new(0.01)?, Seed(0).frame(0).xi(light));
     Ok(bound.project(&camera()?))
