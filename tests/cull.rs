@@ -63,7 +63,7 @@ fn grid() -> impl Strategy<Value = Grid> {
     })
 }
 
-/// Before the camera, at all distances and sizes, and now and then everywhere.
+/// In camera space, at all distances and sizes, and now and then everywhere.
 fn stretch() -> impl Strategy<Value = ProjectedEllipsoid> {
     let center = (-30.0..30.0_f32, -20.0..20.0_f32, -50.0..5.0_f32);
     let ellipsoid = (center, generators::ellipsoid(), -3.0..0.5_f32);

@@ -169,7 +169,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// What is left of a frame when roulette, and that alone, is averaged out: all `lights`.
+    /// The mean of a frame over roulette alone, shaded with all `lights`.
     pub fn truth_of(&self, frame: &Frame, lights: &[GlossyLight]) -> Truth {
         let all = fewer::light(frame, lights, 1, 0);
         let pixels = Reference::pixels(frame, self.stride());

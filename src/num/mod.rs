@@ -18,13 +18,15 @@
 mod float;
 #[cfg(feature = "cull")]
 mod lanes;
+#[cfg(all(test, feature = "cull"))]
+mod lanes_tests;
 mod real;
 mod rounding;
 mod scalar;
 mod vector;
 
 #[cfg(all(test, feature = "cull"))]
-pub(crate) use lanes::tests::{LaneTest, at_every_level, to_array};
+pub(crate) use lanes_tests::{LaneTest, at_every_level, to_array};
 
 pub(crate) use float::{power, sqrt, sqrt_f64, tan};
 #[cfg(feature = "cull")]

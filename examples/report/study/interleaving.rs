@@ -28,10 +28,12 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
     let mut panels = Vec::new();
     for subject in subjects {
         let mut series =
-            [("as it is", Line::Solid), ("denoised", Line::Dashed)].map(|(name, line)| Series {
-                name: name.into(),
-                look: Look { color: 0, line },
-                points: Vec::new(),
+            [("not denoised", Line::Solid), ("denoised", Line::Dashed)].map(|(name, line)| {
+                Series {
+                    name: name.into(),
+                    look: Look { color: 0, line },
+                    points: Vec::new(),
+                }
             });
         let truth = subject.truth(Gloss::new(ROUGHNESS, F0));
         for width in [1, 2, 4, 8, 16] {

@@ -188,18 +188,18 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
         panels.push(Panel {
             title: subject.name.into(),
             x: Axis::log("ns per light, tile and depth interval"),
-            y: Axis::linear("of the lights in a list, in vain (%)"),
+            y: Axis::linear("false positives in a list (%)"),
             series,
         });
     }
     Study {
         name: "tests",
-        caption: "A light is in a list in vain if no pixel of the tile's depth interval accepts it. Down and \
+        caption: "A light in a list is a false positive if no pixel of the tile's depth interval accepts it. Down and \
                   to the left is better; pairs that blocks of tiles decide together share the time.",
         sheet,
         summary: None,
         figure: Figure {
-            title: "Lights listed in vain, against the time of a test".into(),
+            title: "False positives in lists, against the time of a test".into(),
             subtitle: of_frames(
                 subjects,
                 &format!(
