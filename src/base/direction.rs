@@ -72,8 +72,8 @@ impl Direction {
     /// that a saved direction is read bit for bit.
     #[cfg(feature = "serde")]
     pub(crate) fn of_unit_or_any_length(vector: Vec3) -> Result<Self, Error> {
-        const NEAR: f64 = UNIT_LENGTH_ROUNDINGS * num::UNIT_ROUNDOFF as f64;
-        if (dot_f64(vector, vector) - 1.0).abs() <= NEAR {
+        let tolerance = UNIT_LENGTH_ROUNDINGS * f64::from(num::UNIT_ROUNDOFF);
+        if (dot_f64(vector, vector) - 1.0).abs() <= tolerance {
             Ok(Self(vector))
         } else {
             Self::new(vector)

@@ -1,53 +1,52 @@
-//! The bound of an anisotropic GGX lobe: an ellipsoid whose axes follow the lobe, wherever the grain
-//! turns it.
+//! The bound of an anisotropic GGX lobe: an ellipsoid whose axes follow the lobe.
 //!
 //! # The surface
 //!
-//! With P = diag(α_x, α_y, 1) in the frame (tangent, bitangent, n), the surface l = r′/(ω_hᵀP⁻²ω_h) that
-//! the joint maximum of F·G2 leaves, r′² = (F·G2/G1)_max G1(ω_i)/(4πμ α_xα_y), is
+//! Let P = diag(α_x, α_y, 1) in the frame (tangent, bitangent, n). With F·G2 at its joint maximum the
+//! isosurface is l = r′/(ω_hᵀP⁻²ω_h), r′² = (F·G2/G1)_max G1(ω_i)/(4πμ α_xα_y), or
 //!
 //! x(m) = r′ (2(ω_i·Pm) Pm − ω_i ‖Pm‖²) for all unit vectors m,
 //!
-//! as for one roughness (see `triaxial`). Only the set of half vectors Pm counts, so any K with
-//! K Kᵀ = P² serves as well as P. With ω_t the direction of the tangent part of ω_i and ω_w = n × ω_t
-//! across the plane of incidence, take the triangular one: Km = τm₁ω_t + (σm₁ + νm₂)ω_w + m₃n, where
+//! as for a single roughness (see `triaxial`). Only the set of half vectors Pm matters, so P can be replaced
+//! by any K with K Kᵀ = P². Let ω_t be the direction of the tangential part of ω_i, and ω_w = n × ω_t the
+//! normal of the plane of incidence. The triangular K is Km = τm₁ω_t + (σm₁ + νm₂)ω_w + m₃n, where
 //!
 //! τ² = ω_tᵀP²ω_t, ν = α_xα_y/τ, σ = ω_tᵀP²ω_w/τ.
 //!
-//! Then no component of what follows is a difference of larger numbers. Collected by the products of m,
-//! with s = sin θ_i and ω_v = ω_w × ω_u, and in units of r′,
+//! With it no component below is a difference of larger numbers. Collected by the products of components of
+//! m, with s = sin θ_i and ω_v = ω_w × ω_u, and in units of r′,
 //!
 //! x(m) = m₃²ω_u + m₁²x₁ + m₂²x₂ + 2m₁m₃c₁ + 2m₂m₃c₂ + 2m₁m₂c₃,
 //!
 //! x₁ = −τ²ω_u + 2τσs ω_w − σ²ω_i, x₂ = −ν²ω_i,
 //! c₁ = τω_v + μσω_w, c₂ = μνω_w, c₃ = τνs ω_w − νσω_i.
 //!
-//! # What encloses it
+//! # The ellipsoids that enclose it
 //!
-//! With x̄ = ½(x₁ + x₂), y = m₁² + m₂² and m₃² = 1 − y this is, for any e > 0,
+//! With x̄ = ½(x₁ + x₂), y = m₁² + m₂² and m₃² = 1 − y, for any e > 0,
 //!
 //! x(m) = ½(ω_u + x̄) − e a + (1 − 2y + e) a + 2m₁m₃c₁ + 2m₂m₃c₂ + (m₁² − m₂²) b + 2m₁m₂c₃,
 //!
-//! a = ½(ω_u − x̄), b = ½(x₁ − x₂): a constant, and five vectors whose factors fulfil
+//! a = ½(ω_u − x̄), b = ½(x₁ − x₂). This is a constant, and a sum of five vectors whose factors satisfy
 //!
 //! (1 − 2y + e)²/(1+e)² + 4y(1−y)/(1+e) + 4e y²/(1+e)² = 1,
 //!
-//! identically in y. So all points x(m) − (½(ω_u + x̄) − e a) lie in the image of the ball of five
-//! dimensions under the matrix with the columns
+//! for every y. So all points x(m) − (½(ω_u + x̄) − e a) lie in the image of the five-dimensional unit ball
+//! under the matrix with the columns
 //!
 //! (1+e) a, √(1+e) c₁, √(1+e) c₂, (1+e)/(2√e) b, (1+e)/(2√e) c₃,
 //!
-//! **an ellipsoid for every e**. b and c₃ are small, of the order of the roughness squared, and e takes
-//! the room for them from where they vanish, ahead of the light. Its volume squared is, to first order
-//! in e, (1 + 4e)(A + p/e), with A the squared volume of (a, c₁, c₂), and p ¼ of the sum of those with b
-//! or c₃ in the place of one of them; it is least for 4Ae² + 4pe = p. So the volume is within 15 % of
-//! the least one, and mostly within 0.1 %.
+//! **an enclosing ellipsoid for every e**. b and c₃ are small, of the order of the squared roughness. e makes
+//! room for them ahead of the light, where they vanish. Let A be the squared volume of (a, c₁, c₂), and p a
+//! quarter of the sum of those with b or c₃ in the place of one of the three. To first order in e, the
+//! squared volume of the ellipsoid is (1 + 4e)(A + p/e), which is smallest for 4Ae² + 4pe = p. With this e
+//! the volume is within 15 % of the smallest, and mostly within 0.1 %.
 //!
-//! # Where roughness is nearly even
+//! # Nearly isotropic surfaces
 //!
-//! A lobe lies within that of its greater roughness α at the same r′, since ω_hᵀP⁻²ω_h falls as α_x and
-//! α_y grow. So the tighter bound of that isotropic surface encloses it too; the smaller of both is
-//! taken, and for α_x = α_y always the isotropic lobe's own.
+//! The lobe lies within the isotropic one with the larger roughness and the same r′, since ω_hᵀP⁻²ω_h falls
+//! as α_x and α_y grow. So the triaxial bound of that isotropic lobe encloses it too. The smaller of both
+//! ellipsoids is used; for α_x = α_y it is always the isotropic one.
 
 use super::ellipsoid::Ellipsoids;
 use super::principal_axes::principal_axes;
@@ -63,12 +62,11 @@ const POINT_ROUNDINGS: f64 = 4.0;
 /// Pays for the rounding of r′ and of its product with a semi-axis.
 const SEMI_AXIS_ROUNDINGS: u16 = 24;
 
-/// An ellipsoid for Φ/(δξ) = 1, with the joint maximum of F and G2
-/// ([`max_reflected`](AnisotropicGgxLobe::max_reflected)).
+/// Bounds the lobe by an ellipsoid that is about as narrow along each of its axes as the lobe is. F and G2
+/// are at their joint maximum ([`max_reflected`](AnisotropicGgxLobe::max_reflected)).
 ///
-/// It follows the grain: along each of its axes it is about as narrow as the lobe. Never larger than
-/// the paper's [`Spheroid`](crate::Spheroid) for the greater of α_x and α_y around this lobe, but for
-/// rounding, and the triaxial bound of a [`GgxLobe`](crate::GgxLobe) for α_x = α_y.
+/// But for rounding, it is never larger than the paper's [`Spheroid`](crate::Spheroid) around this lobe for
+/// the larger of α_x and α_y. For α_x = α_y it is the triaxial bound of a [`GgxLobe`](crate::GgxLobe).
 impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<AnisotropicGgxLobe<F, G>> for Triaxial {
     type Shape = Ellipsoid;
 
@@ -124,7 +122,7 @@ fn volume<N: Single>(ellipsoids: &Ellipsoids<N>) -> N::Double {
     x * y * z
 }
 
-/// How the grain lies to the plane of incidence, in each lane.
+/// The plane of incidence and the roughness along it, in each lane.
 struct Incidence<D> {
     /// ω_u, ω_v, ω_w.
     frame: [Vector3<D>; 3],
@@ -146,14 +144,13 @@ impl<D: Double> Incidence<D> {
         let [tangent, bitangent, normal] = SurfaceAxes::new(lobe.normal, tangent).axes;
         let (n, incoming) = (lobe.normal.widen(), lobe.incoming.widen());
         let lengths = n.length() * incoming.length();
-        // Of the f32 vectors, whose products are exact: of the unit vectors it may be all rounding.
+        // From the f32 vectors, whose products are exact: that of the unit vectors could be mostly rounding.
         let cosine = exact_dot(lobe.normal, lobe.incoming) / lengths;
         let product = n.cross(incoming);
         let length = product.length();
-        // At normal incidence any plane will do.
+        // At normal incidence the plane is arbitrary.
         let is_oblique = length.is_positive();
-        let across_plane = Vector3::new(product.x / length, product.y / length, product.z / length);
-        let across_plane = Vector3::select(is_oblique, across_plane, bitangent);
+        let across_plane = Vector3::select(is_oblique, product / length, bitangent);
         let (along_plane, sine) = (across_plane.cross(normal), length / lengths);
 
         let (alpha_x, alpha_y) = (along.widen(), across.widen());
@@ -176,11 +173,11 @@ impl<D: Double> Incidence<D> {
         }
     }
 
-    /// The ellipsoids that follow the grain, for r′ = `scale`.
+    /// The ellipsoids of the module documentation, for r′ = `scale`.
     ///
-    /// Their semi-axes hold a ball besides, of the radius by which the rounding to `f32` moves a point:
-    /// the sum of an ellipsoid of squared semi-axes aᵢ² and a ball of radius d lies in that of
-    /// (1+t)aᵢ² + (1+1/t)d², for any t > 0.
+    /// A ball is added, whose radius d is the distance by which rounding to `f32` moves a point. For any t >
+    /// 0, the sum of an ellipsoid with the semi-axes aᵢ and this ball lies in the ellipsoid with the squared
+    /// semi-axes (1+t)aᵢ² + (1+1/t)d².
     #[inline(always)]
     fn ellipsoids<N: Single<Double = D>>(&self, scale: N) -> Ellipsoids<N> {
         let (center, columns) = self.image_of_ball();
@@ -193,7 +190,7 @@ impl<D: Double> Incidence<D> {
 
         let [a, b, c] = semi_axes;
         let (shortest, longest) = (a.min(b).min(c), a.max(b).max(c));
-        // Half an ulp in each component of three axes, 1.5u, and of the centre.
+        // Half an ulp in each component of the three axes and of the centre.
         let moved = (longest + center.length()) * (POINT_ROUNDINGS * f64::from(UNIT_ROUNDOFF));
         let one = moved.splat(1.0);
         let share = (moved / shortest).min(one);
@@ -218,7 +215,7 @@ impl<D: Double> Incidence<D> {
         Vector3::combine([(scale * v.x, x), (scale * v.y, y), (scale * v.z, z)])
     }
 
-    /// The centre and the five columns that the module's text derives, in the frame (ω_u, ω_v, ω_w).
+    /// The centre and the five columns of the module documentation, in the frame (ω_u, ω_v, ω_w).
     #[inline(always)]
     fn image_of_ball(&self) -> (Vector3<D>, [Vector3<D>; 5]) {
         let (mu, s) = (self.cosine, self.sine);
@@ -262,7 +259,7 @@ impl<D: Double> Incidence<D> {
     }
 }
 
-/// The e of nearly the least volume; positive.
+/// The positive e of nearly the smallest volume.
 #[inline(always)]
 fn enlargement<D: Double>(
     long: Vector3<D>,
@@ -279,6 +276,6 @@ fn enlargement<D: Double>(
     let whole = squared(long, faces[0]);
     let p = (of_faces(bends[0]) + of_faces(bends[1])) * 0.25;
     let e = p / ((p + (p * (p + whole)).sqrt()) * 2.0);
-    // Where nothing bends, any e does; and 0/0 is none.
+    // If b and c₃ vanish, any e is valid, but 0/0 is not.
     e.max(e.splat(1e-100))
 }

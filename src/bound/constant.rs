@@ -9,7 +9,8 @@ use crate::num::{Single, Vector3, round_up, sqrt};
 /// Pays for the rounding of √(1/4π).
 const RADIUS_ROUNDINGS: u16 = 2;
 
-/// The isosurface itself, the sphere of radius √(1/4π) around the light [Tokuyoshi & Harada 2016].
+/// Bounds the lobe by its isosurface, the sphere of radius √(1/4π) around the light
+/// [Tokuyoshi & Harada 2016].
 impl BoundStrategy<ConstantLobe> for Paper {
     type Shape = Sphere;
 

@@ -7,13 +7,12 @@ use crate::num::{Matrix3, Single, Vector3};
 /// Pays for the rounding of the semi-axes' growth and of their product with it.
 const GROWTH_ROUNDINGS: u16 = 4;
 
-/// An ellipsoid, its surface included: {c + R diag(semi-axes) y : ‖y‖ ≤ 1}.
+/// A closed ellipsoid {c + R diag(semi-axes) y : ‖y‖ ≤ 1}. It is empty if its semi-axes are zero.
 ///
-/// The one shape that all bounds which are not spheres become before they meet a view. It is empty
-/// if its semi-axes are zero.
+/// All bounds but spheres are projected as ellipsoids.
 ///
-/// Its centre is held in two parts, the light and the way from there, since of their sum little is left
-/// for a light with a tiny range far from the world's origin.
+/// The centre is stored in two parts, the position of the light and the offset from there. Their sum would be
+/// inaccurate for a light with a small range far from the origin of the world.
 ///
 /// ```
 /// use stochastic_light_culling::{Ellipsoid, Shape, glam::{Mat3, Vec3}};
@@ -21,7 +20,7 @@ const GROWTH_ROUNDINGS: u16 = 4;
 /// let around = Vec3::new(0.0, 1.0, 0.0);
 /// let unit = Ellipsoid::new(around, Mat3::IDENTITY, Vec3::new(1.0, 2.0, 3.0))?;
 /// let far = Vec3::new(1e9, 0.0, 0.0);
-/// // A metre above the light, which the sum of both numbers cannot say.
+/// // The offset of a metre would be lost in the sum.
 /// assert_eq!(unit.placed(far, 1.0).center_parts(), [far, around]);
 /// assert!(unit.placed(far, 0.0).is_empty());
 /// # Ok::<(), stochastic_light_culling::Error>(())
@@ -35,7 +34,7 @@ pub struct Ellipsoid {
 }
 
 impl Ellipsoid {
-    /// The ellipsoid around `center` whose axes are the columns of `rotation`.
+    /// Creates the ellipsoid around `center` with `semi_axes` along the columns of `rotation`.
     ///
     /// # Errors
     ///
@@ -65,7 +64,7 @@ impl Ellipsoid {
         }
     }
 
-    /// The formulas of one ellipsoid.
+    /// The ellipsoid as a single lane.
     #[inline(always)]
     pub(crate) fn lanes(&self) -> Ellipsoids<f32> {
         Ellipsoids {
@@ -75,26 +74,27 @@ impl Ellipsoid {
         }
     }
 
-    /// The centre c, rounded.
+    /// The centre c, rounded to `f32`.
     #[must_use]
     pub fn center(&self) -> Vec3 {
         self.light + self.offset
     }
 
-    /// Two vectors whose exact sum is the centre c: the light's position, and the way from there; or c
-    /// and zero, of an ellipsoid that is [made](Self::new) of its centre.
+    /// Two vectors whose exact sum is the centre c: the position of the light and the offset from there. For
+    /// an ellipsoid made by [`new`](Self::new) they are c and zero.
     #[must_use]
     pub fn center_parts(&self) -> [Vec3; 2] {
         [self.light, self.offset]
     }
 
-    /// R, whose columns are the directions of the axes.
+    /// The rotation R, whose columns are the directions of the axes.
     #[must_use]
     pub fn rotation(&self) -> Mat3 {
         self.rotation
     }
 
-    /// The semi-axes, in the order of the columns of [`rotation`](Self::rotation).
+    /// The semi-axes, in the order of the columns of [`rotation`](Self::rotation). Zero if the ellipsoid is
+    /// empty, infinite if the range of the light overflows.
     #[must_use]
     pub fn semi_axes(&self) -> Vec3 {
         self.semi_axes
@@ -153,8 +153,9 @@ impl<N: Single> ShapeLanes<N> for Ellipsoids<N> {
 }
 
 impl Ellipsoid {
-    /// The shape scaled by `scale ≥ 0` about the origin and then moved by `position`, rounded
-    /// outward. Scaled by zero it is [empty](Self::is_empty).
+    /// Scales the shape by `scale` ≥ 0 about the origin, then moves it by `position`, rounded outward.
+    ///
+    /// Scaled by zero it is [empty](Self::is_empty).
     #[inline]
     #[must_use]
     pub fn placed(self, position: Vec3, scale: f32) -> Self {
@@ -168,7 +169,7 @@ impl Ellipsoid {
         Self::from_lanes(lanes.placed(position.into(), scale))
     }
 
-    /// Whether nothing lies inside: the light reaches nowhere.
+    /// Whether the shape is empty: the light reaches nothing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.semi_axes == Vec3::ZERO
@@ -195,7 +196,7 @@ impl Shape for Ellipsoid {
 
     const QUADS: usize = 5;
 
-    // In the order in which an ellipsoid holds its numbers, which are copied fastest so.
+    // In the order of the fields, in which the numbers are copied fastest.
     #[inline(always)]
     fn to_quads(&self) -> Quads<f32> {
         let ([q, o], r, s) = (self.center_parts(), self.rotation, self.semi_axes);

@@ -1,14 +1,13 @@
-//! How far a GGX lobe reaches along a direction, without a shape around it: exactly, but for what F and
-//! G2 take from the NDF.
+//! The extent of a GGX lobe along a direction, without a shape around the lobe. It is exact for the NDF
+//! alone, with F and G2 at their joint maximum.
 //!
-//! With the surface as the image of a sphere, x(m) = (r/α) (2(ω_i·Pm) Pm − ω_i ‖Pm‖²) (see
-//! `triaxial`), the largest d·x(m) over unit m is r/α times the largest eigenvalue of the symmetric
-//! matrix
+//! The surface is the image of a sphere, x(m) = (r/α) (2(ω_i·Pm) Pm − ω_i ‖Pm‖²) (see `triaxial`). So the
+//! largest d·x(m) over all unit vectors m is r/α times the largest eigenvalue of the symmetric matrix
 //!
 //! Q = P (ω_i dᵀ + d ω_iᵀ − (d·ω_i) 1) P = a bᵀ + b aᵀ − (d·ω_i) P², a = Pω_i, b = Pd.
 //!
-//! That is the largest root of a cubic which is convex beyond it. Newton's method from above stays
-//! above, so where it ends is an upper bound.
+//! That is the largest root of a cubic, which is convex beyond it. Newton's method from above stays above, so
+//! its result is an upper bound wherever it ends.
 
 use crate::base::Direction;
 use crate::lobe::{Fresnel, GgxLobe, MaskingShadowing, unit};
@@ -18,7 +17,8 @@ use crate::num::{Vector3, round_up, sqrt};
 const EIGENVALUE_ROUNDINGS: u16 = 1;
 /// Pays for the rounding of r/α and of its product with the eigenvalue.
 const EXTENT_ROUNDINGS: u16 = 16;
-/// Newton's method ends where the cubic is below this share of the squared root: there it is mostly rounding.
+/// Newton's method ends where the cubic is below this share of the squared root, since there it is mostly
+/// rounding.
 const NEGLIGIBLE_VALUE: f64 = 1e-13;
 /// Newton's method ends where its step is below this share of the root.
 const NEGLIGIBLE_STEP: f64 = 1e-9;
@@ -26,14 +26,18 @@ const NEGLIGIBLE_STEP: f64 = 1e-9;
 const DOUBLE_ROOT_SHARE: f64 = 1e-7;
 
 impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
-    /// An upper bound of d·x over the isosurface for Φ/(δξ) = 1 and a light at the origin, where d is the
-    /// unit `direction`. Exact but for rounding, which is upward, for the surface of the NDF alone, with F·G2
-    /// at its [joint maximum](GgxLobe::max_reflected) everywhere. Scale it by
+    /// The extent of the isosurface for Φ/(δξ) = 1 along the unit vector `direction` = d: an upper bound of
+    /// d·x over its points x, for a light at the origin. Multiply it by
     /// [`Roulette::scale`](crate::Roulette::scale).
     ///
-    /// The extents along ±x, ±y and ±z of any frame are the lobe's box in it, and a plane n·x = c with
-    /// c above the extent along n does not meet the lobe. Not negative, for the light itself belongs to
-    /// it; zero for a light from below. Costs about three times as much as the tighter bound.
+    /// For the surface that the NDF alone gives, with F·G2 at its [joint maximum](GgxLobe::max_reflected), it
+    /// is exact but for rounding, which is upward. It is not negative, since the light itself belongs to the
+    /// lobe, and zero if the lobe is empty.
+    ///
+    /// The extents along ±x, ±y and ±z of any frame give the bounding box of the lobe in that frame. A plane
+    /// n·x = c with c above the extent along n does not intersect the lobe.
+    ///
+    /// The computation takes two to three times as long as that of the triaxial bound.
     ///
     /// ```
     /// use stochastic_light_culling::{Direction, Ggx, GgxLobe, Incidence, NoFresnel, glam::Vec3};
@@ -53,7 +57,7 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
         let [normal, incoming, direction] =
             [self.normal(), self.incoming(), direction].map(Vector3::from);
         let [n, w, d] = [normal, incoming, direction].map(unit);
-        // Of the f32 vectors, whose products are exact: of the unit vectors it may be all rounding.
+        // From the f32 vectors, whose products are exact: that of the unit vectors could be mostly rounding.
         let across = normal.widen().cross(incoming.widen());
         let eigenvalue = Cubic::new(f64::from(alpha), n, w, d, across).largest_root_above();
         let masking = self.lanes().masking_over_four_cosines();
@@ -66,11 +70,11 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
 
 /// The characteristic polynomial λ³ − trace λ² + minors λ − determinant of Q.
 ///
-/// In the frame (tangent, bitangent, n), where P is diagonal, each term carries its power of α as a
-/// factor, so that small α cost no accuracy. The matrix between the two P has the eigenvalues 1, −1
-/// and −d·ω_i, hence the determinant d·ω_i.
+/// In the frame (tangent, bitangent, n), in which P is diagonal, each term has its power of α as a factor, so
+/// that small α cost no accuracy. The matrix between the two factors P has the eigenvalues 1, −1 and −d·ω_i,
+/// hence the determinant d·ω_i.
 struct Cubic {
-    /// No root is larger.
+    /// The largest sum of absolute values in a row; no root is larger.
     norm: f64,
     trace: f64,
     minors: f64,
@@ -87,16 +91,16 @@ impl Cubic {
         across: Vector3<f64>,
     ) -> Self {
         let length = across.length();
-        // At normal incidence ω_i has no tangent part, and its frame no say.
+        // At normal incidence ω_i has no tangential part, and the frame does not matter.
         let bitangent = if length > 0.0 {
-            Vector3::new(across.x / length, across.y / length, across.z / length)
+            across / length
         } else {
             Vector3::zero(0.0)
         };
         let tangent = bitangent.cross(n);
         let (w_t, w_n) = (w.dot(tangent), w.dot(n));
         let [d_t, d_b, d_n] = [tangent, bitangent, n].map(|axis| axis.dot(d));
-        // Of a frame without a say, d's part in the tangent plane as a whole is the tangent part.
+        // The tangent then lies along the tangential part of d.
         let d_t = if length > 0.0 {
             d_t
         } else {
@@ -121,18 +125,18 @@ impl Cubic {
         }
     }
 
-    /// The largest root λ, or a little more: by 4·10⁻⁷ of it at most where it is double, else by far less.
+    /// The largest root λ, enlarged: by at most 4·10⁻⁷ of itself where it is double, elsewhere by far less.
     ///
-    /// α² ≤ λ, since Q's Rayleigh quotient at P⁻¹(ω_i + d) is ‖ω_i + d‖²/‖P⁻¹(ω_i + d)‖². The least root
-    /// is not positive, since the matrix between the two P has the eigenvalue −1. So the cubic at λ + e
-    /// is at least e²λ.
+    /// α² ≤ λ, since the Rayleigh quotient of Q at P⁻¹(ω_i + d) is ‖ω_i + d‖²/‖P⁻¹(ω_i + d)‖². The smallest
+    /// root is not positive, since the matrix between the two factors P has the eigenvalue −1. So the cubic
+    /// at λ + e is at least e²λ.
     fn largest_root_above(&self) -> f64 {
         let (mut root, mut step) = (self.norm, self.norm);
-        // Towards the largest of three real roots steps become smaller, until rounding says otherwise.
+        // Towards the largest of three real roots the steps become smaller, until they are mostly rounding.
         while step > NEGLIGIBLE_STEP * root {
             let value = ((root - self.trace) * root + self.minors) * root - self.determinant;
-            // Near a double root both are mostly rounding, and their quotient means nothing. The roundings
-            // of `value` and of the coefficients come to less than a quarter of this, since α² ≤ root.
+            // Near a double root value and slope are mostly rounding. The rounding of `value` and of the
+            // coefficients is less than a quarter of this, since α² ≤ root.
             if value <= NEGLIGIBLE_VALUE * root * root {
                 break;
             }
@@ -144,7 +148,6 @@ impl Cubic {
             step = next_step;
             root -= step;
         }
-        // At a double root half of the digits are rounding.
         root * (1.0 + DOUBLE_ROOT_SHARE)
     }
 }

@@ -6,9 +6,9 @@ use super::{BoundStrategy, Bounded, Ellipsoid, Paper, Shape, Sphere, Tight};
 use crate::lobe::LambertLobe;
 use crate::num::{Single, Vector3};
 
-/// (1/3)^¾, the distance from the light to the centre over R.
+/// The distance from the light to the centre of the sphere, over R: (1/3)^¾.
 const CENTER: f32 = 0.438_691_34;
-/// (4/27)^¼, the radius over R.
+/// The radius of the sphere over R: (4/27)^¼.
 const RADIUS: f32 = 0.620_403_2;
 /// √(1/π)
 const ROOT_OF_ONE_OVER_PI: f32 = 0.564_189_6;
@@ -16,7 +16,7 @@ const ROOT_OF_ONE_OVER_PI: f32 = 0.564_189_6;
 /// Pays for the rounding of the sphere's radius and centre.
 const RADIUS_ROUNDINGS: u16 = 16;
 
-/// √ρ and n
+/// The quads of a lobe: √ρ and n.
 #[inline(always)]
 fn to_quads(lobe: &LambertLobe) -> Quads<f32> {
     let n = lobe.normal();
@@ -25,19 +25,20 @@ fn to_quads(lobe: &LambertLobe) -> Quads<f32> {
     quads
 }
 
-/// R = √(ρ/π), and n. The roots are apart, since the product with a subnormal albedo would be off by more
-/// than its root is.
+/// R = √(ρ/π), and n. R is a product of two roots, since the product with a subnormal albedo would lose
+/// digits.
 #[inline(always)]
 fn reach_and_normal<N: Single>(quads: &Quads<N>) -> (N, Vector3<N>) {
     let [albedo_root, x, y, z] = quads[0];
     (albedo_root * ROOT_OF_ONE_OVER_PI, Vector3::new(x, y, z))
 }
 
-/// The sphere around the surface l = R√cosθ, R² = ρ/π, centred (1/3)^¾ R above the light, with
-/// radius (4/27)^¼ R [Tokuyoshi & Harada 2017, Sec. 6].
+/// Bounds the surface l = R√cosθ, R² = ρ/π, by the smallest sphere. Its centre is (1/3)^¾ R above the light,
+/// and its radius is (4/27)^¼ R [Tokuyoshi & Harada 2017, Sec. 6].
 ///
-/// A point of the surface is l² − 2(1/3)^¾ R² cos^{3/2}θ + (1/3)^{3/2} R² from that centre, squared,
-/// which is largest at cosθ = 1/√3 and there (4/27)^½ R²: the sphere is the smallest one.
+/// The squared distance of a point of the surface from that centre is
+/// l² − 2(1/3)^¾ R² cos^{3/2}θ + (1/3)^{3/2} R². It is largest at cosθ = 1/√3, where it is (4/27)^½ R². There
+/// the surface touches the sphere in a great circle, so no sphere is smaller.
 impl BoundStrategy<LambertLobe> for Paper {
     type Shape = Sphere;
 
@@ -68,11 +69,11 @@ impl BoundStrategy<LambertLobe> for Paper {
     }
 }
 
-/// The smallest ellipsoid around the surface l = R√cosθ, R² = ρ/π: flatter than the sphere, with 0.8896 of
-/// its volume.
+/// Bounds the surface l = R√cosθ, R² = ρ/π, by the smallest ellipsoid. It is flatter than the sphere, and has
+/// 0.8896 of its volume.
 ///
-/// Its semi-axes are 0.54438R along the normal and 0.62468R across it, and it touches the surface at
-/// its tip and in the ring at cosθ = 0.422. A tile test takes longer for it than for the sphere.
+/// Its semi-axes are 0.54438R along the normal and 0.62468R across it. It touches the surface at the tip and
+/// in the ring at cosθ = 0.422. Its tile test takes longer than that of the sphere.
 impl BoundStrategy<LambertLobe> for Tight {
     type Shape = Ellipsoid;
 

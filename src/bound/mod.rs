@@ -1,8 +1,8 @@
-//! Shapes, and which shape encloses which lobe.
+//! Bounding shapes, and the strategies that enclose a lobe in one.
 //!
-//! The isosurface of a light is {√(Φ·value(ω)/(δξ))·ω}, so its shape is the lobe's alone: a lobe is
-//! bounded once for unit scale and at the origin ([`BoundStrategy`]), and each frame's ξ scales the bound
-//! and puts it in place ([`Shape`]). Each step rounds outward.
+//! The isosurface of a light is {√(Φ·value(ω)/(δξ))·ω : ω a unit vector}, so its shape depends only on the
+//! lobe. A lobe is bounded once, at the origin and for Φ/(δξ) = 1 ([`BoundStrategy`]). In each frame the
+//! bound is scaled for that frame's ξ and moved to the light ([`Shape`]). Each step rounds outward.
 
 mod anisotropic_ggx;
 mod constant;

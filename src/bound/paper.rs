@@ -1,4 +1,4 @@
-//! The paper's spheroid around a GGX lobe.
+//! The spheroid of [Tokuyoshi & Harada 2017] around a GGX lobe.
 
 use core::f32::consts::FRAC_1_PI;
 
@@ -8,16 +8,14 @@ use super::{BoundStrategy, Paper, Shape, Spheroid};
 use crate::lobe::{Fresnel, GgxLobe, GgxLobes, MaskingShadowing};
 use crate::num::{Single, UNIT_ROUNDOFF};
 
-/// Half an ulp in each component of the axis, which is all that its rounding to f32 tilts it by.
+/// The tilt of the axis by its rounding to `f32`: half an ulp in each component.
 const AXIS_TILT_RADIANS: f32 = 0.87 * UNIT_ROUNDOFF;
 
-/// The paper's spheroid for Φ/(δξ) = 1.
+/// Bounds the lobe by the paper's spheroid.
 ///
-/// F ≤ F_max, G2 ≤ G1(μ) and D(ω_h·n) ≤ D(cos(θ/2)), where θ is the angle between ω_o and ω_u:
-/// the lobe is at most that of the spheroid with
-/// r² = F_max G1(μ)/(4πμ) [Tokuyoshi & Harada 2017, Eqs. 9–12].
-///
-/// Touched ahead of the light but for F, G2 and rounding.
+/// F ≤ F_max, G2 ≤ G1(μ) and D(ω_h·n) ≤ D(cos(θ/2)), where θ is the angle between ω_o and ω_u. So the
+/// spheroid with r² = F_max G1(μ)/(4πμ) contains the lobe [Tokuyoshi & Harada 2017, Eqs. 9–12]. If F and G2
+/// were at their bounds, the lobe would touch it ahead of the light.
 impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<GgxLobe<F, G>> for Paper {
     type Shape = Spheroid;
 

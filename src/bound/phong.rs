@@ -5,13 +5,13 @@ use super::{BoundStrategy, Bounded, Ellipsoid, Tight};
 use crate::lobe::PhongLobe;
 use crate::num::{Single, Vector3};
 
-/// The smallest ellipsoid around the surface l = R cos^{n/2}γ, R² = ρ(n+1)/(2π), where γ is the angle
-/// to the mirror direction: what [Dachsbacher & Stamminger 2006] splat, made tight.
+/// Bounds the lobe by the smallest ellipsoid around the surface l = R cos^{n/2}γ, R² = ρ(n+1)/(2π), where γ
+/// is the angle to the mirror direction. [Dachsbacher & Stamminger 2006] splat ellipsoids around such lobes.
 ///
-/// For n ≥ 2 its semi-axis along the mirror direction is
-/// a = ¾((3n+2)/(3n+6))^{(n+2)/4} R, across it a√(8/(3n+2)), and it touches the light; for n = 2 it is
-/// a sphere. Broader lobes hang from the tip of theirs, which is within 10⁻⁴ of the least volume. The
-/// part of the lobe that the horizon cuts off is enclosed too.
+/// For n ≥ 2 the semi-axes are a = ¾((3n+2)/(3n+6))^{(n+2)/4} R along the mirror direction and a√(8/(3n+2))
+/// across it, and the ellipsoid touches the light; for n = 2 it is a sphere. For n < 2 the ellipsoid touches
+/// the tip of the lobe, and its volume is within 10⁻⁴ of the smallest. The part of the lobe that the horizon
+/// cuts off is enclosed too.
 impl BoundStrategy<PhongLobe> for Tight {
     type Shape = Ellipsoid;
 

@@ -1,15 +1,14 @@
-//! The axes of an ellipsoid that is given as the image of a ball.
+//! The principal axes of an ellipsoid that is the image of a ball.
 
 use crate::num::{Double, Vector3};
 
-/// The axes, of unit length and at right angles, and semi-axes of the ellipsoid {Az : ‖z‖ ≤ 1} or of one
-/// around it, where `rows` are the rows of A, none of them zero.
+/// The orthonormal axes and the semi-axes of an ellipsoid that contains {Az : ‖z‖ ≤ 1} tightly, where `rows`
+/// are the rows of A, none of them zero.
 ///
-/// Rows that are turned against each other until they are at right angles have the semi-axes as their
-/// lengths [Hestenes 1958]; each is as accurate as its row was, however much shorter than the others,
-/// which an eigenvalue of A Aᵀ would not be. Where the fixed number of turns ends, the semi-axes are
-/// enlarged by what the rows still have in common: for unit rows Aᵀ with cosines cᵢⱼ between them no
-/// eigenvalue of A Aᵀ exceeds 1 + Σ|cᵢⱼ|.
+/// The method is one-sided Jacobi: rotations of pairs of rows make the rows orthogonal, and their lengths are
+/// then the semi-axes [Hestenes 1958]. Each semi-axis is as accurate as its row, however much shorter than
+/// the others, unlike an eigenvalue of A Aᵀ. The number of rotations is fixed. What they leave enlarges the
+/// semi-axes: if unit rows have the cosines cᵢⱼ between them, no eigenvalue of A Aᵀ exceeds 1 + Σ|cᵢⱼ|.
 #[inline(always)]
 pub(super) fn principal_axes<D: Double, const K: usize>(
     mut rows: [[D; K]; 3],
@@ -26,7 +25,7 @@ pub(super) fn principal_axes<D: Double, const K: usize>(
             continue;
         }
         let cotangent = (squares[1] - squares[0]) / (in_common * 2.0);
-        // Of the two angles the one below 45°.
+        // The smaller of the two angles, at most 45°.
         let root = (cotangent * cotangent + 1.0).sqrt();
         let tangent = one.copysign(cotangent) / (cotangent.abs() + root);
         let cosine = one / (tangent * tangent + 1.0).sqrt();

@@ -1,10 +1,10 @@
-//! Polyhedra around an ellipsoid, for a rasteriser.
+//! Polyhedra around an ellipsoid, for rasterisers.
 //!
-//! A polyhedron that contains the unit ball becomes one that contains the ellipsoid by the same linear map,
-//! and faces that touch stay faces that touch. Around the ball are the regular icosahedron whose faces touch
-//! it, and what is left of it when it is cut closer at its twelve vertices: each face is divided at the
-//! middles of its edges, where its middle quarter touches the ball already, and the vertices are drawn in
-//! until the other three quarters touch it too.
+//! The map from the unit ball to the ellipsoid takes a polyhedron around the ball to one around the
+//! ellipsoid, and faces that touch the ball to faces that touch the ellipsoid. There are two polyhedra. One
+//! is the regular icosahedron whose faces touch the ball. The other divides each of its faces at the
+//! midpoints of the edges. The middle quarter of a face touches the ball already. The twelve original
+//! vertices are moved inward until the other three quarters touch it too.
 
 use glam::Vec3;
 
@@ -16,11 +16,11 @@ type Vector = [f64; 3];
 /// Pays for rounding a vertex to `f32`, in units of u times the farthest component.
 const VERTEX_ROUNDINGS: f64 = 2.0;
 
-/// A closed triangle mesh that contains an [`Ellipsoid`], each triangle touching it: the geometry by which
-/// lights are splatted [Dachsbacher & Stamminger 2006].
+/// A closed triangle mesh around an [`Ellipsoid`], with which lights are splatted
+/// [Dachsbacher & Stamminger 2006]. Each triangle touches the ellipsoid.
 ///
-/// Of all polyhedra with so many faces around a ball none has less than 0.973 (20) and 0.990 (80) of these
-/// volumes [Fejes Tóth 1964, *Regular Figures*].
+/// No polyhedron around a ball with as many faces has less than 0.973 (20 faces) or 0.990 (80 faces) of the
+/// volume of these [Fejes Tóth 1964, *Regular Figures*].
 ///
 /// ```
 /// use stochastic_light_culling::{Bounded, Direction, LambertLobe, Proxy, Tight, glam::Vec3};
@@ -29,7 +29,7 @@ const VERTEX_ROUNDINGS: f64 = 2.0;
 /// let positions: Vec<Vec3> = Proxy::Icosphere.vertices(&light).collect();
 /// let indices: &[u16] = Proxy::Icosphere.triangles().as_flattened();
 /// assert_eq!((positions.len(), indices.len()), (42, 3 * 80));
-/// // Where vertices cost more than pixels.
+/// // With fewer vertices, where they cost more than pixels.
 /// assert_eq!(Proxy::Icosahedron.vertices(&light).len(), 12);
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
@@ -43,8 +43,8 @@ pub enum Proxy {
 }
 
 impl Proxy {
-    /// The vertices of each triangle, as indices of [`vertices`](Self::vertices): counter-clockwise as seen
-    /// from outside, in a right-handed space.
+    /// The three vertices of each triangle, as indices into [`vertices`](Self::vertices). They are in
+    /// counter-clockwise order as seen from outside, in a right-handed space.
     #[must_use]
     pub fn triangles(self) -> &'static [[u16; 3]] {
         match self {
@@ -53,12 +53,12 @@ impl Proxy {
         }
     }
 
-    /// The vertices of the mesh around `ellipsoid`, rounded outward: 12 or 42 points in world space, in the
-    /// unit of the ellipsoid.
+    /// The vertices of the mesh around `ellipsoid`, rounded outward: 12 or 42 points in the space and unit of
+    /// the ellipsoid.
     ///
-    /// Far from the origin, where neighbouring `f32` numbers lie farther apart, the mesh is larger by that.
-    /// All are the centre if the ellipsoid is empty; where they would leave the range of `f32`, its largest
-    /// numbers stand for them. Never NaN.
+    /// Far from the origin the mesh is larger by the spacing of `f32` numbers there. All vertices are at the
+    /// centre if the ellipsoid is empty. Components that overflow are clamped to the largest `f32` numbers.
+    /// Never NaN.
     #[must_use]
     pub fn vertices(
         self,
@@ -73,7 +73,7 @@ impl Proxy {
     }
 }
 
-/// The map from around the unit ball to around the ellipsoid.
+/// The affine map from the unit ball to an ellipsoid.
 #[derive(Clone, Copy)]
 struct Frame {
     center: Vector3<f64>,
@@ -81,9 +81,10 @@ struct Frame {
 }
 
 impl Frame {
-    /// Rounding moves a vertex by √3u of its largest component at most, and no point of a triangle by more.
-    /// So the mesh is put around an ellipsoid that holds a ball of that radius d besides: that of the squared
-    /// semi-axes (1+t)aᵢ² + (1+1/t)d², for any t > 0.
+    /// The frame of an ellipsoid that contains the sum of `ellipsoid` and a ball that pays for rounding.
+    ///
+    /// Rounding moves a vertex by at most d = √3u of its largest component, and no point of a triangle by
+    /// more. For any t > 0, the ellipsoid with the squared semi-axes (1+t)aᵢ² + (1+1/t)d² contains the sum.
     fn around(ellipsoid: &Ellipsoid) -> Self {
         let wide = |v: Vec3| Vector3::from(v).widen();
         let [light, offset] = ellipsoid.center_parts().map(wide);
@@ -102,7 +103,8 @@ impl Frame {
         let subnormal = f64::from(f32::from_bits(2));
         let moved = VERTEX_ROUNDINGS * f64::from(UNIT_ROUNDOFF) * farthest + subnormal;
         let share = (moved / shortest).min(1.0);
-        // A mirrored frame would turn the triangles inside out; an ellipsoid is its own mirror image.
+        // A mirrored frame would turn the triangles inside out. An ellipsoid is symmetric, so an axis may be
+        // negated.
         let side = axes[0].cross(axes[1]).dot(axes[2]).signum();
         let columns = [(side, 0), (1.0, 1), (1.0, 2)].map(|(side, i)| {
             let a = semi_axes[i];
@@ -127,9 +129,10 @@ impl Frame {
     }
 }
 
-/// The vertices of the icosahedron around the unit ball are at 0, ±A and ±φA, in cyclic order, with the
-/// golden ratio φ: A = √3/φ², here rounded up.
+/// The vertices of the icosahedron around the unit ball are the cyclic permutations of (0, ±A, ±φA), with the
+/// golden ratio φ. A = √3/φ², rounded up.
 const A: f64 = 0.661_584_538_249_608;
+/// φA, rounded up.
 const B: f64 = 1.070_466_269_319_271;
 
 const VERTICES: [Vector; 12] = [
@@ -178,7 +181,8 @@ struct Subdivided {
 static SUBDIVIDED: Subdivided = subdivided();
 
 const fn subdivided() -> Subdivided {
-    /// How far the vertices are drawn in for the corners to touch the unit ball, rounded up.
+    /// The factor that moves the vertices of the icosahedron inward so that the outer triangles touch the
+    /// unit ball, rounded up.
     const DRAWN_IN: f64 = 0.825_664_548_662_088;
     let mut vertices = [[0.0; 3]; 42];
     let mut triangles = [[0; 3]; 80];
@@ -188,7 +192,7 @@ const fn subdivided() -> Subdivided {
         vertices[i] = [DRAWN_IN * x, DRAWN_IN * y, DRAWN_IN * z];
         i += 1;
     }
-    // The vertex in the middle of each edge, from either end.
+    // The vertex at the midpoint of each edge, by its two ends in either order.
     let mut middles = [[0_u16; 12]; 12];
     let mut next = 12;
     let mut face = 0;

@@ -7,21 +7,23 @@ const SCALED_LENGTH_ROUNDINGS: u16 = 1;
 /// Pays for the rounding of a sum of vectors, in units of u times its largest component.
 const SUM_ROUNDINGS: f32 = 2.0;
 
-/// Quads that a shape or a lobe may have in a batch.
+/// The largest number of quads of a shape or a lobe in a batch.
 pub const MAX_QUADS: usize = 5;
 
-/// The numbers of a shape or a lobe, of which the first so many quads are in use.
+/// The numbers of a shape or a lobe. Only the first `QUADS` of them are in use.
 pub type Quads<N> = [Quad<N>; MAX_QUADS];
 
-/// A shape around a light, for generic code; each has these functions itself: [`Spheroid`](crate::Spheroid),
-/// [`Ellipsoid`](crate::Ellipsoid) and [`Sphere`](crate::Sphere).
+/// A bounding shape around a light: [`Spheroid`](crate::Spheroid), [`Ellipsoid`](crate::Ellipsoid) or
+/// [`Sphere`](crate::Sphere).
+///
+/// The trait is for generic code. Each shape also has these functions as its own.
 pub trait Shape: Copy + 'static {
-    /// The shape scaled by `scale ≥ 0` about the origin and then moved by `position`, rounded
-    /// outward. Scaled by zero it is [empty](Self::is_empty).
+    /// Scales the shape by `scale` ≥ 0 about the origin, then moves it by `position`, rounded outward. Scaled
+    /// by zero it is [empty](Self::is_empty).
     #[must_use]
     fn placed(self, position: Vec3, scale: f32) -> Self;
 
-    /// Whether nothing lies inside: the light reaches nowhere.
+    /// Whether the shape is empty: the light reaches nothing.
     fn is_empty(&self) -> bool;
 
     #[doc(hidden)]
@@ -31,7 +33,7 @@ pub trait Shape: Copy + 'static {
     #[doc(hidden)]
     type Lanes<N: Single>: ShapeLanes<N>;
 
-    /// Quads in use.
+    /// The number of quads in use.
     #[doc(hidden)]
     const QUADS: usize;
 
@@ -47,14 +49,14 @@ pub trait Shape: Copy + 'static {
 
 /// One shape in each lane.
 pub trait ShapeLanes<N: Single>: Copy {
-    /// [`Shape::placed`], of shapes that are not empty, by a positive scale.
+    /// Computes [`Shape::placed`] for shapes that are not empty and a positive scale.
     fn placed(self, position: Vector3<N>, scale: N) -> Self;
 
-    /// [`Shape::is_empty`].
+    /// Computes [`Shape::is_empty`].
     fn is_empty(&self) -> N::Mask;
 }
 
-/// `length` times `scale`, rounded up; zero only if one of them is, however small the product.
+/// `length` times `scale`, rounded up. Zero only if one of them is: a product that underflows is clamped.
 #[inline(always)]
 pub(super) fn scaled<N: Single>(length: N, scale: N) -> N {
     let least = scale.splat(f32::MIN_POSITIVE);
@@ -65,7 +67,7 @@ pub(super) fn scaled<N: Single>(length: N, scale: N) -> N {
     N::select(is_positive, product, scale.zero())
 }
 
-/// Upper bound, in length, of the rounding error of a sum of two vectors, component by component.
+/// Upper bound of the length of the rounding error of `sum`, a vector whose components are rounded once.
 #[inline(always)]
 pub(super) fn rounding_of_sum<N: Single>(sum: Vector3<N>) -> N {
     sum.abs().max_element() * (SUM_ROUNDINGS * UNIT_ROUNDOFF)

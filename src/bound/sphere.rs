@@ -7,7 +7,7 @@ use crate::num::{Single, Vector3};
 /// Pays for the sum of the radius and the rounding of the centre.
 const PLACED_RADIUS_ROUNDINGS: u16 = 2;
 
-/// A ball, its surface included.
+/// A closed ball, or the empty set if its radius is zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     center: Vec3,
@@ -15,7 +15,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// The ball of `radius` around `center`; a radius of zero is the empty set.
+    /// Creates the ball of `radius` around `center`. A radius of zero is the empty set.
     ///
     /// # Errors
     ///
@@ -32,7 +32,7 @@ impl Sphere {
         Self { center, radius }
     }
 
-    /// The formulas of one sphere.
+    /// The sphere as a single lane.
     #[inline(always)]
     pub(crate) fn lanes(&self) -> Spheres<f32> {
         Spheres {
@@ -47,7 +47,7 @@ impl Sphere {
         self.center
     }
 
-    /// The radius; infinite for a light too bright for its range to be an `f32`.
+    /// The radius. Zero if the sphere is empty, infinite if the range of the light overflows.
     #[must_use]
     pub fn radius(&self) -> f32 {
         self.radius
@@ -81,8 +81,9 @@ impl<N: Single> ShapeLanes<N> for Spheres<N> {
 }
 
 impl Sphere {
-    /// The shape scaled by `scale ≥ 0` about the origin and then moved by `position`, rounded
-    /// outward. Scaled by zero it is [empty](Self::is_empty).
+    /// Scales the shape by `scale` ≥ 0 about the origin, then moves it by `position`, rounded outward.
+    ///
+    /// Scaled by zero it is [empty](Self::is_empty). A radius that overflows is infinite.
     #[inline]
     #[must_use]
     pub fn placed(self, position: Vec3, scale: f32) -> Self {
@@ -92,7 +93,7 @@ impl Sphere {
         Self::from_lanes(self.lanes().placed(position.into(), scale))
     }
 
-    /// Whether nothing lies inside: the light reaches nowhere.
+    /// Whether the shape is empty: the light reaches nothing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.radius == 0.0

@@ -21,18 +21,19 @@ const SEMI_AXIS_ROUNDINGS: u16 = 8;
 /// Pays for the growth of the radius of a spheroid whose focus is rounded.
 const MOVED_RADIUS_ROUNDINGS: u16 = 4;
 
-/// The paper's bounding spheroid, held by its focus, which is the light
+/// The paper's bounding spheroid, stored by its focus, which is the light
 /// [Tokuyoshi & Harada 2017, Eqs. 12–15].
 ///
-/// In the direction at angle θ to its axis ω_u it reaches s(θ) = rα/(1 − k cos²(θ/2)), k = 1 − α²,
-/// from the light at q. With cos²(θ/2) = (1 + cosθ)/2 this is the polar equation of a conic,
+/// In a direction at the angle θ to its axis ω_u, its surface is at the distance
+/// s(θ) = rα/(1 − k cos²(θ/2)), k = 1 − α², from the light at q. With cos²(θ/2) = (1 + cosθ)/2 this is the
+/// polar equation of a conic,
 ///
 /// s(θ) = P/(1 − e cosθ), P = 2αr/(1 + α²), e = k/(1 + α²),
 ///
-/// with one focus at q. It reaches s(0) = r/α ahead of the light and s(π) = rα behind it: the
-/// centre q + (k/2α) r ω_u and the semi-axis r_u = (1 + α²)/(2α) r are half the difference and half
-/// the sum of these, and r_v = r_w = r is their geometric mean. To add the centre's large offset
-/// and subtract it again would lose the near end; so the focus is what is stored.
+/// with one focus at q. It extends s(0) = r/α ahead of the light and s(π) = rα behind it. Half their
+/// difference, (k/2α) r, is the distance from q to the centre; half their sum is the semi-axis
+/// r_u = (1 + α²)/(2α) r; and their geometric mean is r_v = r_w = r. The focus is stored, and not the centre,
+/// since adding the large offset of the centre and subtracting it again would lose the near end.
 ///
 /// ```
 /// use stochastic_light_culling::{Bounded, Direction, Ggx, GgxLobe, Incidence, NoFresnel, Paper, glam::Vec3};
@@ -53,7 +54,7 @@ pub struct Spheroid {
 }
 
 impl Spheroid {
-    /// The formulas of one spheroid.
+    /// The spheroid as a single lane.
     #[inline(always)]
     pub(crate) fn lanes(&self) -> Spheroids<f32> {
         Spheroids {
@@ -64,38 +65,40 @@ impl Spheroid {
         }
     }
 
-    /// The light's position q, a focus of the spheroid.
+    /// The focus q, the position of the light.
     #[must_use]
     pub fn focus(&self) -> Vec3 {
         self.focus
     }
 
-    /// The long axis ω_u, the direction of mirror reflection.
+    /// The long axis ω_u, the mirror direction.
     #[must_use]
     pub fn axis(&self) -> Direction {
         self.axis
     }
 
-    /// r, the two short semi-axes; infinite for a light too bright for its range to be an `f32`.
+    /// The length r of the two short semi-axes. Zero if the spheroid is empty, infinite if the range of the
+    /// light overflows.
     #[must_use]
     pub fn radius(&self) -> f32 {
         self.radius
     }
 
-    /// α, which gives the shape: how far the spheroid reaches behind the focus over r, and r over
-    /// how far it reaches ahead.
+    /// The roughness α, which determines the proportions: the spheroid extends rα behind the focus and r/α
+    /// ahead.
     #[must_use]
     pub fn roughness(&self) -> f32 {
         self.roughness
     }
 
-    /// r_u = (1 + α²)/(2α) r, the long semi-axis.
+    /// The long semi-axis r_u = (1 + α²)/(2α) r.
     #[must_use]
     pub fn long_semi_axis(&self) -> f32 {
         self.lanes().long_semi_axis()
     }
 
-    /// The sphere around the light of radius r/α, the bound of the 2016 method (Fig. 9a).
+    /// The sphere of radius r/α around the light, the bound of the 2016 method
+    /// [Tokuyoshi & Harada 2017, Fig. 9a]. It contains the spheroid.
     #[must_use]
     pub fn sphere_at_focus(&self) -> Sphere {
         Sphere::from_parts(
@@ -104,7 +107,7 @@ impl Spheroid {
         )
     }
 
-    /// The smallest sphere around the spheroid (Fig. 9b).
+    /// The smallest sphere around the spheroid, rounded outward [Tokuyoshi & Harada 2017, Fig. 9b].
     #[must_use]
     pub fn enclosing_sphere(&self) -> Sphere {
         if self.is_empty() || self.long_semi_axis().is_infinite() {
@@ -112,7 +115,6 @@ impl Spheroid {
         }
         let offset = self.lanes().center_offset();
         let center = Vector3::from(self.focus) + offset;
-        // The distance itself is off by four roundings of at most r_u.
         let radius = round_up(self.long_semi_axis(), LONG_SEMI_AXIS_ROUNDINGS);
         let rounding = rounding_of_sum(offset) + rounding_of_sum(center);
         let radius = round_up(radius + rounding, ENCLOSING_SPHERE_ROUNDINGS);
@@ -130,11 +132,11 @@ pub struct Spheroids<N> {
 }
 
 impl<N: Single> Spheroids<N> {
-    /// The spheroids with a focus at the origin and the given r and α, enlarged to hold as well
-    /// those whose axis is tilted by up to `tilt_radians`.
+    /// The spheroids with a focus at the origin and the given r and α, enlarged to contain those whose axis
+    /// is tilted by up to `tilt_radians`.
     ///
-    /// The greatest slope of ln s(θ) is e/√(1−e²) = k/(2α), so a tilt by φ is paid for by a factor
-    /// exp(φk/(2α)), which 1 + x + x² exceeds for x ≤ 1.
+    /// The largest slope of ln s(θ) is e/√(1−e²) = k/(2α). So the factor exp(x), x = φk/(2α), pays for a tilt
+    /// by φ, and 1 + x + x² is larger for x ≤ 1.
     #[inline(always)]
     pub fn around_tilted_axis(
         axis: Vector3<N>,
@@ -157,22 +159,21 @@ impl<N: Single> Spheroids<N> {
         self.radius * ((alpha * alpha + 1.0) / (alpha * 2.0))
     }
 
-    /// The vector from the focus to the centre, (k/2α) r long.
+    /// The vector (k/2α) r ω_u from the focus to the centre.
     #[inline(always)]
     fn center_offset(&self) -> Vector3<N> {
         let alpha = self.roughness;
         self.axis * (self.radius * (alpha.one_minus() * (alpha + 1.0) / (alpha * 2.0)))
     }
 
-    /// The ellipsoids with the centre and semi-axes (r_u, r, r), enlarged to pay for their rounding; not
-    /// finite where a spheroid is not.
+    /// The ellipsoids with the same centre and the semi-axes (r_u, r, r), rounded outward. Not finite where a
+    /// spheroid is not.
     #[inline(always)]
     pub fn ellipsoids(self) -> Ellipsoids<N> {
         let long = self.long_semi_axis();
         let (v, w) = self.axis.any_orthonormal_pair();
         let offset = self.center_offset();
-        // In units of the unit sphere: the offset's rounding over the shortest semi-axis, and the tilt
-        // of the axes over the ratio of longest to shortest.
+        // Relative to the shortest semi-axis: the rounding of the offset, and the tilt of the long axis.
         let tilt = long * (FRAME_TILT_ROUNDINGS * UNIT_ROUNDOFF);
         let growth = (rounding_of_sum(offset) + tilt) / self.radius + 1.0;
         let short = (self.radius * growth).round_up(SEMI_AXIS_ROUNDINGS);
@@ -197,7 +198,7 @@ impl<N: Single> ShapeLanes<N> for Spheroids<N> {
                 ..self
             };
         }
-        // The nearest point is αr from the focus, which may be off by the rounding of these two.
+        // The focus is off by the rounding of these two sums, and the nearest point is αr from it.
         let offset = self.focus * scale;
         let focus = position + offset;
         let rounding = rounding_of_sum(offset) + rounding_of_sum(focus);
@@ -217,8 +218,9 @@ impl<N: Single> ShapeLanes<N> for Spheroids<N> {
 }
 
 impl Spheroid {
-    /// The shape scaled by `scale ≥ 0` about the origin and then moved by `position`, rounded
-    /// outward. Scaled by zero it is [empty](Self::is_empty).
+    /// Scales the shape by `scale` ≥ 0 about the origin, then moves it by `position`, rounded outward.
+    ///
+    /// Scaled by zero it is [empty](Self::is_empty).
     #[inline]
     #[must_use]
     pub fn placed(self, position: Vec3, scale: f32) -> Self {
@@ -230,7 +232,7 @@ impl Spheroid {
         }
     }
 
-    /// Whether nothing lies inside: the light reaches nowhere.
+    /// Whether the shape is empty: the light reaches nothing.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.radius == 0.0
@@ -289,7 +291,7 @@ impl Shape for Spheroid {
 }
 
 impl From<Spheroid> for Ellipsoid {
-    /// The ellipsoid with the centre and semi-axes (r_u, r, r), enlarged to pay for their rounding.
+    /// The ellipsoid with the same centre and the semi-axes (r_u, r, r), rounded outward.
     #[inline]
     fn from(spheroid: Spheroid) -> Self {
         let long = spheroid.long_semi_axis();

@@ -3,8 +3,10 @@ use crate::light::{Roulette, Vpl, Xi};
 use crate::lobe::Lobe;
 use crate::num::Single;
 
-/// A way to bound lobes of type `L`: [`Tight`], [`Triaxial`] and [`Paper`], each for the lobes that it is
-/// known for, and [`OwnBound`] for every lobe.
+/// A way to bound lobes of type `L`.
+///
+/// [`Tight`], [`Triaxial`] and [`Paper`] are strategies for some of the lobes of this crate, [`OwnBound`] is
+/// one for every lobe.
 ///
 /// ```
 /// use stochastic_light_culling::{
@@ -26,11 +28,11 @@ use crate::num::Single;
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 pub trait BoundStrategy<L: Lobe>: Copy {
-    /// The kind of shape.
+    /// The type of the shape.
     type Shape: Shape;
 
-    /// A shape that contains the unit isosurface {√value(ω)·ω : ω a unit vector} of `lobe`, for a light at
-    /// the origin.
+    /// Bounds the unit isosurface {√value(ω)·ω : ω a unit vector} of `lobe`, for a light at the origin, by a
+    /// shape that contains it. The shape is empty if the lobe is.
     #[inline]
     fn unit_bound(&self, lobe: &L) -> Self::Shape {
         if lobe.is_empty() {
@@ -40,18 +42,18 @@ pub trait BoundStrategy<L: Lobe>: Copy {
         Self::Shape::from_lanes(self.unit_bounds::<f32>(&quads, &[per_light]))
     }
 
-    /// What a lobe has besides numbers.
+    /// The part of a lobe that is not stored as quads.
     #[doc(hidden)]
     type PerLight: Copy;
 
-    /// Quads in use.
+    /// The number of quads in use.
     #[doc(hidden)]
     const QUADS: usize;
 
     #[doc(hidden)]
     fn to_quads(&self, lobe: &L) -> (Quads<f32>, Self::PerLight);
 
-    /// [`unit_bound`](Self::unit_bound) in each lane, of lobes that are not empty.
+    /// Computes [`unit_bound`](Self::unit_bound) in each lane, for lobes that are not empty.
     #[doc(hidden)]
     fn unit_bounds<N: Single>(
         &self,
@@ -60,15 +62,15 @@ pub trait BoundStrategy<L: Lobe>: Copy {
     ) -> <Self::Shape as Shape>::Lanes<N>;
 }
 
-/// A lobe whose isosurface has a closed bound.
+/// A lobe with a recommended bound.
 ///
-/// A lobe of another crate implements this with the strategy [`OwnBound`], and can then be culled and
-/// batched as those of this crate:
+/// A lobe of another crate implements this trait with the strategy [`OwnBound`]. It can then be batched and
+/// culled as the lobes of this crate are:
 ///
 /// ```
 /// use stochastic_light_culling::{Bounded, Direction, Lobe, OwnBound, Sphere, glam::Vec3};
 ///
-/// /// Even intensity within a hemisphere.
+/// /// Constant intensity within a hemisphere.
 /// #[derive(Clone, Copy)]
 /// struct Hemisphere(Direction);
 ///
@@ -88,18 +90,18 @@ pub trait BoundStrategy<L: Lobe>: Copy {
 /// }
 /// ```
 pub trait Bounded: Lobe + Sized + 'static {
-    /// The shape of the recommended bound.
+    /// The type of the recommended bound.
     type Shape: Shape;
 
-    /// The strategy that [`unit_bound`](Self::unit_bound) follows, and batches with it.
+    /// The strategy of [`unit_bound`](Self::unit_bound), which batches use too.
     type Strategy: BoundStrategy<Self, Shape = Self::Shape> + Default;
 
-    /// The recommended shape around the unit isosurface {√value(ω)·ω : ω a unit vector}, for a light at
-    /// the origin.
+    /// Bounds the unit isosurface {√value(ω)·ω : ω a unit vector}, for a light at the origin, in the
+    /// recommended way. The shape is empty if the lobe is.
     #[must_use]
     fn unit_bound(&self) -> Self::Shape;
 
-    /// The shape that `strategy` puts around the unit isosurface.
+    /// Bounds the unit isosurface by `strategy`.
     #[must_use]
     fn unit_bound_by<B: BoundStrategy<Self>>(&self, strategy: B) -> B::Shape {
         strategy.unit_bound(self)
@@ -107,10 +109,11 @@ pub trait Bounded: Lobe + Sized + 'static {
 }
 
 impl<L: Bounded> Vpl<L> {
-    /// The recommended bound of everything that accepts this light in a frame with `roulette` and `xi`.
+    /// The recommended bound of all points that accept this light in a frame with `roulette` and `xi`. Empty
+    /// if the flux is zero.
     ///
-    /// For a light that does not change, keep [`unit_bound`](Bounded::unit_bound) and place that
-    /// anew each frame.
+    /// For a light that does not change, keep its [`unit_bound`](Bounded::unit_bound), and place that in each
+    /// frame ([`Shape::placed`]).
     #[inline]
     #[must_use]
     pub fn bound(&self, roulette: &Roulette, xi: Xi) -> L::Shape {
@@ -119,8 +122,8 @@ impl<L: Bounded> Vpl<L> {
 }
 
 impl<L: Lobe> Vpl<L> {
-    /// The bound that `strategy` puts around everything that accepts this light in a frame with `roulette`
-    /// and `xi`.
+    /// The bound, by `strategy`, of all points that accept this light in a frame with `roulette` and `xi`.
+    /// Empty if the flux is zero.
     #[inline]
     #[must_use]
     pub fn bound_by<B: BoundStrategy<L>>(
@@ -136,24 +139,24 @@ impl<L: Lobe> Vpl<L> {
     }
 }
 
-/// The bound of the papers: the spheroid of a [`GgxLobe`](crate::GgxLobe)
+/// The strategy of the papers: the spheroid of a [`GgxLobe`](crate::GgxLobe)
 /// [Tokuyoshi & Harada 2017, Eqs. 9–15], and the spheres of a [`LambertLobe`](crate::LambertLobe)
 /// [Tokuyoshi & Harada 2017, Sec. 6] and of a [`ConstantLobe`](crate::ConstantLobe)
 /// [Tokuyoshi & Harada 2016].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Paper;
 
-/// An ellipsoid in closed form that follows the lobe along three axes, of a [`GgxLobe`](crate::GgxLobe) or an
-/// [`AnisotropicGgxLobe`](crate::AnisotropicGgxLobe).
+/// The strategy of an ellipsoid in closed form with three different semi-axes, for a
+/// [`GgxLobe`](crate::GgxLobe) or an [`AnisotropicGgxLobe`](crate::AnisotropicGgxLobe).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Triaxial;
 
-/// The smallest ellipsoid there is, or nearly: of a [`GgxLobe`](crate::GgxLobe) from a table, of a
-/// [`PhongLobe`](crate::PhongLobe) and a [`LambertLobe`](crate::LambertLobe) in closed form.
+/// The strategy of the smallest ellipsoid, or nearly: from a table for a [`GgxLobe`](crate::GgxLobe), in
+/// closed form for a [`PhongLobe`](crate::PhongLobe) and a [`LambertLobe`](crate::LambertLobe).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tight;
 
-/// The bound that a lobe gives itself as [`Bounded::unit_bound`]. A batch takes it light by light, and
+/// The strategy that returns the lobe's own [`Bounded::unit_bound`]. A batch computes it light by light, and
 /// places and projects it in lanes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OwnBound;

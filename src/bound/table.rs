@@ -1,23 +1,24 @@
-//! The smallest ellipsoids around GGX lobes, over three coordinates.
+//! The table of the tight bound: nearly smallest ellipsoids around GGX lobes, over three coordinates.
 //!
-//! Made by `examples/tabulate.rs`, which also proves that they enclose (`tests/certificate`).
+//! `examples/tabulate.rs` makes it, and proves that its ellipsoids enclose the lobes (`tests/certificate`).
 
-/// Knots along √α, evenly over \[0, 1\].
+/// The number of knots of √α, evenly spaced in \[0, 1\].
 pub(crate) const ROUGHNESSES: usize = 9;
-/// Knots along tan(θ_i/2) + tan(δ/2), evenly over \[0, 2\].
+/// The number of knots of tan(θ_i/2) + tan(δ/2), evenly spaced in \[0, 2\].
 pub(crate) const INCIDENCES: usize = 21;
-/// Knots along ∜F0, evenly over \[∜[`LEAST_F0`], 1\].
+/// The number of knots of ∜F0, evenly spaced in \[∜[`LEAST_F0`], 1\].
 pub(crate) const REFLECTANCES: usize = 7;
-/// What F0 over the F of grazing light is at least taken to be.
+/// Lower clamp of the quotient of F0 and F at grazing incidence.
 pub(crate) const LEAST_F0: f32 = 1.0 / 256.0;
-/// [`LEAST_F0`] over what F rises by from there.
+/// [`LEAST_F0`] over the rise of F from there, 1 − [`LEAST_F0`].
 pub(crate) const LEAST_SHARE: f32 = LEAST_F0 / (1.0 - LEAST_F0);
 /// ∜[`LEAST_F0`].
 pub(crate) const LEAST_ROOT: f32 = 0.25;
 
-/// c₁, c₂, A₁₁, A₂₁, A₂₂ and A₃₃ of the ellipsoid {c + A y : ‖y‖ ≤ 1}, in the module's coordinates.
+/// The number of elements of a knot: c₁, c₂, A₁₁, A₂₁, A₂₂ and A₃₃ of the ellipsoid {c + A y : ‖y‖ ≤ 1} in
+/// the coordinates ζ of `tight`.
 pub(crate) const NUMBERS: usize = 6;
-/// With two zeros, so that a knot fills vector registers.
+/// The distance between knots: [`NUMBERS`] and two zeros, so that a knot fills vector registers.
 pub(crate) const STRIDE: usize = 8;
 
 const BYTES: &[u8] = include_bytes!("table.bin");
@@ -40,12 +41,12 @@ pub(crate) static TABLE: [[f32; STRIDE]; KNOTS] = {
     table
 };
 
-/// A coordinate of the table, counted in knots: `scale` times what is left of it after `first`.
+/// A coordinate of the table. Counted in knots, a value x is (x − `first`)·`scale`.
 #[derive(Clone, Copy)]
 pub(crate) struct Axis {
     pub first: f32,
     pub scale: f32,
-    /// The last knot that has a next one.
+    /// The last knot but one, which starts the last interval.
     pub last: f32,
 }
 
@@ -66,7 +67,7 @@ impl Axis {
     }
 }
 
-/// The ellipsoid at a knot, which the certificate is of.
+/// The ellipsoid at a knot, for `tests/certificate`.
 #[allow(dead_code, reason = "the crate itself only interpolates")]
 pub(crate) fn knot([i, j, k]: [usize; 3]) -> [f32; NUMBERS] {
     let [a, b, c, d, e, f, ..] = TABLE[(i * INCIDENCES + j) * REFLECTANCES + k];

@@ -1,61 +1,63 @@
 //! The tight bound: nearly the smallest ellipsoid around the lobe, from a table.
 //!
-//! The paper's spheroid bounds F, G2 and the NDF each on its own, and all around the light. This
-//! ellipsoid bounds their product above the surface, and leans with it in the plane of incidence.
+//! The paper's spheroid bounds F, G2 and the NDF separately, in all directions. This ellipsoid bounds their
+//! product above the surface, and tilts with it in the plane of incidence.
 //!
 //! # The surface as the image of a sphere
 //!
-//! Let P = diag(α, α, 1) in the frame (tangent, bitangent, n) and m any unit vector. With the half
-//! vector along Pm, the surface l = (r/α)‖Pm‖² that the NDF alone gives is, relative to the light,
-//! x(m) = (r/α) (2(ω_i·Pm) Pm − ω_i ‖Pm‖²). Of the angle of incidence θ and L = kμ² + α², let
+//! Let P = diag(α, α, 1) in the frame (tangent, bitangent, n), and let m be any unit vector. With the half
+//! vector along Pm, the surface l = (r/α)‖Pm‖² that the NDF alone gives is, relative to the light, x(m) =
+//! (r/α) (2(ω_i·Pm) Pm − ω_i ‖Pm‖²). With the angle of incidence θ and L = kμ² + α², let
 //!
 //! cosδ = μ/√L, sinδ = α sinθ/√L, that is, tanδ = α tanθ.
 //!
-//! With m₁ away from ω_i, x(m) along (ω_u, −ω_v, ω_w) in units of (r/α, r, r√L) is
+//! With m₁ pointing away from ω_i, x(m) along (ω_u, −ω_v, ω_w) in units of (r/α, r, r√L) is
 //!
 //! ζ₁ = m₃² − α²m₁² − α² cos2θ m₂², ζ₂ = 2m₁m₃ + α sin2θ m₂², ζ₃ = 2m₂ (cosδ m₃ − sinδ m₁).
 //!
-//! The isosurface is this times s, s² = F G2/(F(μ) G1(μ)) for r² = F(μ) G1(μ)/(4πμ), above the surface.
-//! With N = α²(1−m₃²) + m₃² and a = cosδ m₃ − sinδ m₁, the half angle's cosine is a√(L/N), and
-//! μ_o/√L = 2am₃/N − cosδ; as √L is also the root in G1, μ and α over it are cosδ and sinδ/sinθ. Nothing
-//! here depends on μ and α apart where α is small: δ is what tells how far the horizon cuts the lobe.
+//! Above the surface the isosurface is this times s, where s² = F G2/(F(μ) G1(μ)) and r² = F(μ) G1(μ)/(4πμ).
+//! With N = α²(1−m₃²) + m₃² and a = cosδ m₃ − sinδ m₁, the cosine of the half angle is a√(L/N), and μ_o/√L =
+//! 2am₃/N − cosδ. √L is also the root in G1, and μ/√L = cosδ, α/√L = sinδ/sinθ. So for small α the shape
+//! depends on μ and α only through δ, which determines how much of the lobe the horizon cuts off.
 //!
 //! # The table
 //!
-//! For F = A (F0 + (1 − F0)(1 − cosθ_h)⁵) the shape has three parameters: α, θ and F0. An ellipsoid in
-//! ζ at 1323 of them, a centre and a triangular matrix, is interpolated between; √α,
-//! tan(θ/2) + tan(δ/2) and ∜F0 are what it is nearly linear in. The second resolves grazing light both
-//! where the surface is rough and where α → 0 and all happens at μ ~ α. Other Fresnel factors are put
-//! under one of this form ([`Fresnel::majorant`]). Separable masking is below height-correlated.
+//! For F = A (F0 + (1 − F0)(1 − cosθ_h)⁵) the shape has three parameters: α, θ and F0. The table holds an
+//! ellipsoid in ζ, a centre and a triangular matrix, at 1323 knots, and is interpolated linearly. Its
+//! coordinates √α, tan(θ/2) + tan(δ/2) and ∜F0 make the ellipsoid nearly linear. The second resolves grazing
+//! incidence on rough surfaces, and also for α → 0, where the shape changes at μ ~ α. Any other Fresnel
+//! factor is bounded by one of this form ([`Fresnel::majorant`]). Separable masking is bounded by
+//! height-correlated masking.
 //!
 //! # Which ellipsoid
 //!
-//! A frame scales the ellipsoid by 1/√ξ, ξ uniform. A point at a distance d from the light is then inside
-//! for a share ρ²/d² of all ξ, ρ being the radius of the ellipsoid from the light towards it, and of a
-//! surface an area d² dω/cos lies there: what surfaces have inside, however they lie, goes with ∫ ρ² dω.
-//! The knots make that the least, over the directions above the surface. The volume, ∫ ρ³ dω/3, says
-//! less: the smallest ellipsoids reach farther behind the light, and in the ring of `examples/render`
-//! they let up to 7 % more lights through. So does, for α = 0.05, each per cent of margin: across the
-//! lobe the section through the light, which is near the ellipsoid's end, grows with its root.
+//! In each frame the ellipsoid is scaled by 1/√ξ, with ξ uniform. Let ρ be the radius of the ellipsoid from
+//! the light towards a point at the distance d. The point is inside for a share ρ²/d² of all ξ, and a surface
+//! there has the area d² dω/cos. So the expected area inside, for surfaces of any orientation, is
+//! proportional to ∫ ρ² dω. The knots minimise that integral over the directions above the surface. The
+//! volume, ∫ ρ³ dω/3, is a worse measure: the ellipsoids of smallest volume extend farther behind the light,
+//! and in the ring of `examples/render` they let up to 7 % more lights through. For α = 0.05 each per cent of
+//! margin costs as much: the section across the lobe at the light, which is near the end of the ellipsoid,
+//! grows with the root of the margin.
 //!
 //! # Enclosure
 //!
-//! So each knot has as much margin as samples in the cells around it need, and more by roughness,
-//! incidence and F0: up to 6 %, and where smooth metals reflect at an angle next to none, but for what
-//! the fit itself keeps away from the samples (`examples/tabulate`).
+//! So each knot has only as much margin as the samples in the cells around it need, and an extra that depends
+//! on roughness, incidence and F0. The extra is up to 6 %. For smooth metals at oblique incidence it is
+//! nearly zero, besides the margin of the fit itself (`examples/tabulate`).
 //!
-//! That the interpolated ellipsoids then enclose the surface, for every √α in \[0, 1\],
-//! tan(θ/2) + tan(δ/2) in \[0, 2\] and ∜F0 in \[1/4, 1\], is proved: ‖y‖² ≤ 1 − 2·10⁻⁴ for each point
-//! c + A y of the surface, a statement on five variables, which `tests/certificate` shows box by box. Over
-//! a box ‖y‖² is a polynomial of the second degree and a bound of what is left, rounded outward in every
-//! step; all 960 cells take 14 million boxes, little more than a minute of one core. The rest, 10⁻⁴ of a
-//! radius, is for the rounding to `f32` of the three coordinates and of the interpolation.
+//! The interpolated ellipsoids are proved to enclose the surface for every √α in \[0, 1\], tan(θ/2) +
+//! tan(δ/2) in \[0, 2\] and ∜F0 in \[1/4, 1\]. The statement is ‖y‖² ≤ 1 − 2·10⁻⁴ for each point c + A y of
+//! the surface. It has five variables, and `tests/certificate` proves it box by box. Over a box ‖y‖² is
+//! enclosed by a quadratic polynomial and a bound of its remainder, rounded outward in every step. The 960
+//! cells take 14 million boxes, little more than a minute on one core. The gap of 10⁻⁴ of a radius pays for
+//! the rounding to `f32` of the three coordinates and of the interpolation.
 //!
 //! ```text
 //! cargo run --release --example tabulate -- --prove
 //! ```
 //!
-//! Where the paper's spheroid is smaller, near normal incidence, it is taken instead.
+//! Where the paper's spheroid is smaller, near normal incidence, it is used instead.
 
 use core::f32::consts::FRAC_1_PI;
 
@@ -79,14 +81,15 @@ const AXES_TILT_ROUNDINGS: f32 = 12.0;
 /// Pays for the rounding of the semi-axes.
 const SEMI_AXIS_ROUNDINGS: u16 = 96;
 
-/// An ellipsoid around what the lobe sends above the surface, with its Fresnel factor, masking and shadowing,
-/// that has nearly as little as can be of the surfaces around the light inside.
+/// Bounds the part of the lobe above the surface, with its Fresnel factor, masking and shadowing, by an
+/// ellipsoid that contains nearly as little as possible of the surfaces around the light.
 ///
-/// The [triaxial bound](Triaxial) instead if the lobe's masking function may be above the height-correlated
-/// one, which the table is for.
+/// For α ≤ 0.5 its volume is on average 1.08 times that of the smallest ellipsoid for metals, and 1.18 times
+/// for dielectrics. But for rounding, it is never above that of the paper's [`Spheroid`](crate::Spheroid).
 ///
-/// For α ≤ 0.5 its volume is 1.08 times that of the smallest in the mean for metals, 1.18 times for
-/// dielectrics; never above that of the paper's [`Spheroid`](crate::Spheroid) but for rounding.
+/// The table is valid only for masking functions that are [nowhere
+/// above](MaskingShadowing::IS_AT_MOST_HEIGHT_CORRELATED) the height-correlated one. For others this is the
+/// [triaxial bound](Triaxial).
 impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<GgxLobe<F, G>> for Tight {
     type Shape = Ellipsoid;
 
@@ -134,7 +137,7 @@ struct Section<N> {
     across: N,
 }
 
-/// Of an ellipse: the semi-axes, and the cosine and sine of the angle that the first of them is at.
+/// The semi-axes of an ellipse, and the cosine and sine of the angle of the first.
 #[derive(Clone, Copy)]
 struct Axes<N> {
     long: N,
@@ -155,14 +158,13 @@ impl<N: Single> Section<N> {
         let (base, reflectance) = if N::is_known_false(rises) {
             (base, one)
         } else {
-            // Below the table's least F0 the majorant is raised to it.
+            // A majorant with an F0 below the range of the table is raised to it.
             let least = (rise * table::LEAST_SHARE).round_up(LEAST_BASE_ROUNDINGS);
             let base = N::select(rises, base.max(least), base);
             (base, (base / (base + rise)).sqrt().sqrt())
         };
         let coordinates = [alpha.sqrt(), half_incidence + half_delta, reflectance];
         let [c_1, c_2, a_11, a_21, a_22, a_33] = interpolated(coordinates, rises);
-        // The majorant's 1 − μ is off by μ's eight roundings, against at least LEAST_F0.
         let grazing = (one - cosine).max(zero).fifth_power();
         let reflected = (base + rise * grazing).round_up(REFLECTED_ROUNDINGS);
 
@@ -233,7 +235,7 @@ impl<N: Single> Section<N> {
         }
     }
 
-    /// The ellipsoids around lights at the origin.
+    /// The ellipsoids, for lights at the origin.
     #[inline(always)]
     fn ellipsoids(self, lobe: &GgxLobes<N>, plane: &PlaneOfIncidence<N>) -> Ellipsoids<N> {
         let radius = (self.reflected * lobe.masking_over_four_cosines() * FRAC_1_PI).sqrt();
@@ -244,7 +246,7 @@ impl<N: Single> Section<N> {
             sine,
         } = self.axes;
         let (u, across) = (plane.mirror, plane.across);
-        // Down to the surface, where the lobe leans to.
+        // −ω_v, towards the surface, to which the lobe tilts.
         let down = u.cross(across);
         let semi_axes = Vector3::new(long, short, self.across);
         let (least, most) = (short.min(self.across), long.max(self.across));
@@ -259,19 +261,20 @@ impl<N: Single> Section<N> {
 }
 
 impl<N: Single> Axes<N> {
-    /// Of the ellipse with conjugate semi-diameters (`along`, `slant`) and (0, `aside`).
+    /// The axes of the ellipse with the conjugate semi-diameters (`along`, `slant`) and (0, `aside`).
     ///
-    /// The singular values of a triangular matrix: with T the trace of its square and h the difference of
-    /// the eigenvalues of that, the longer is √((T + h)/2), and the shorter the determinant over it, which
-    /// does not cancel. Its direction is along (D + h, 2m) or (2m, h − D), D and m being the difference on
-    /// the diagonal and the element off it, of which again the one that does not cancel is taken. Half of
-    /// that, (l, m) with 2l = |D| + h, has the length √(lh), since h² = D² + 4m².
+    /// The semi-axes are the singular values of the triangular matrix M with these columns. Let T be the
+    /// trace of M Mᵀ, D the difference on its diagonal, m its element off the diagonal, and h = √(D² + 4m²)
+    /// the difference of its eigenvalues. The longer semi-axis is √((T + h)/2). The shorter is the
+    /// determinant of M over the longer, which does not cancel. The longer lies along (D + h, 2m) and (2m, h
+    /// − D); the one that does not cancel is used. Half of it, (l, m) with 2l = |D| + h, has the length
+    /// √(lh).
     #[inline(always)]
     fn of_ellipse(along: N, slant: N, aside: N) -> Self {
         let (first, mixed) = (along * along, along * slant);
         let second = slant * slant + aside * aside;
         let difference = first - second;
-        // Of a circle any axes will do.
+        // For a circle the axes are arbitrary.
         let apart = difference.abs().max(difference.splat(1e-15));
         let h = (apart * apart + mixed * 4.0 * mixed).sqrt();
         let long = ((first + second + h) * 0.5).sqrt();
@@ -290,8 +293,8 @@ impl<N: Single> Axes<N> {
     }
 }
 
-/// The numbers of the table at √α, tan(θ_i/2) + tan(δ/2) and ∜F0, the last only where F `rises`: elsewhere
-/// F0 = 1.
+/// Interpolates the table at √α, tan(θ_i/2) + tan(δ/2) and ∜F0. The last is ignored where F does not rise,
+/// and F0 = 1.
 #[inline(always)]
 fn interpolated<N: Single>(
     [roughness, incidence, reflectance]: [N; 3],
@@ -311,7 +314,7 @@ fn interpolated<N: Single>(
     [c_1, c_2, a_11, a_21, a_22, a_33]
 }
 
-/// A knot that `x` is at or past, and how far `x` is from there to the next.
+/// The knot at or below `x`, and the position of `x` between it and the next, in \[0, 1\] but for rounding.
 #[inline(always)]
 fn knot_and_rest<N: Single>(axis: Axis, x: N) -> (N, N) {
     let x = (x - axis.first) * axis.scale;
@@ -320,21 +323,23 @@ fn knot_and_rest<N: Single>(axis: Axis, x: N) -> (N, N) {
     (knot, x - knot)
 }
 
-/// 1.5·2²³, next to which only integers are representable: a sum with it is rounded to one, which its lowest
-/// bits hold. That takes less than a conversion.
+/// 1.5·2²³, around which only integers are representable. A sum with it is rounded to an integer, which its
+/// lowest bits hold. This is faster than a conversion.
 const WHOLE: f32 = 12_582_912.0;
 
-/// The index of a knot from a sum with [`WHOLE`], clamped so that those between which the table is
-/// interpolated exist.
+/// The index of a knot from a sum with [`WHOLE`], clamped so that the next knots exist.
 #[inline(always)]
 fn first_knot(sum: f32) -> usize {
     const LAST: usize = KNOTS - 1 - TOWARDS_ROUGHNESS - TOWARDS_INCIDENCE;
     usize::from(sum.to_bits() as u16).min(LAST)
 }
 
+/// The step to the next knot of tan(θ_i/2) + tan(δ/2).
 const TOWARDS_INCIDENCE: usize = REFLECTANCES;
+/// The step to the next knot of √α.
 const TOWARDS_ROUGHNESS: usize = INCIDENCES * REFLECTANCES;
 
+/// The numbers of a knot: (c₁, c₂, A₁₁, A₂₁) and (A₂₂, A₃₃, 0, 0).
 #[derive(Clone, Copy)]
 struct Knot(Vec4, Vec4);
 
@@ -345,6 +350,7 @@ impl Knot {
         Self(Vec4::new(a, b, c, d), Vec4::new(e, f, 0.0, 0.0))
     }
 
+    /// Interpolates linearly: `self` at t = 0, `other` at t = 1.
     #[inline(always)]
     fn towards(self, other: Self, t: f32) -> Self {
         Self(
@@ -354,8 +360,8 @@ impl Knot {
     }
 }
 
-/// The numbers between the `first` knot and the next ones, by these shares of the way along √α,
-/// tan(θ_i/2) + tan(δ/2), and ∜F0 if that is not at its last knot: (c₁, c₂, A₁₁, A₂₁) and (A₂₂, A₃₃, 0, 0).
+/// Interpolates between the `first` knot and the next ones, at the positions u along √α, v along
+/// tan(θ_i/2) + tan(δ/2), and w along ∜F0. `None` is the last knot of ∜F0. Returns the numbers of a [`Knot`].
 #[inline(always)]
 fn between(first: usize, [u, v]: [f32; 2], w: Option<f32>) -> [Quad<f32>; 2] {
     let at = |i: usize| match w {

@@ -1,51 +1,51 @@
-//! The triaxial bound: an ellipsoid with three different axes around what the NDF alone gives, in closed
-//! form.
+//! The triaxial bound: an ellipsoid in closed form, with three different semi-axes, around the surface that
+//! the NDF alone gives.
 //!
-//! The paper's spheroid takes the third semi-axis, across the plane of incidence, to be r, though
-//! the lobe is narrower there the more the light grazes the surface. This ellipsoid follows it.
+//! In the paper's spheroid the semi-axis across the plane of incidence is r. But the lobe becomes narrower in
+//! that direction towards grazing incidence. This ellipsoid follows it.
 //!
 //! # The surface as the image of a sphere
 //!
-//! Let P = diag(α, α, 1) in the frame (tangent, bitangent, n) and m any unit vector. With the half
-//! vector along Pm, the surface l = rα/(1 − k(ω_h·n)²) that F_max and G1 leave [Tokuyoshi & Harada
-//! 2017, Eq. 9] is, relative to the light,
+//! Let P = diag(α, α, 1) in the frame (tangent, bitangent, n), and let m be any unit vector. With F and G2 at
+//! constant upper bounds, the isosurface is l = rα/(1 − k(ω_h·n)²) [Tokuyoshi & Harada 2017, Eq. 9]. With the
+//! half vector along Pm it is, relative to the light,
 //!
 //! x(m) = (r/α) (2(ω_i·Pm) Pm − ω_i ‖Pm‖²),
 //!
-//! since l = (r/α)‖Pm‖² there. Write m = (cosψ p, sinψ), with p a unit vector of the plane of
-//! incidence and the last component across it. The products mix into
+//! since l = (r/α)‖Pm‖² there. Write m = (cosψ p, sinψ), with p a unit vector in the plane of incidence, and
+//! the last component across it. Then
 //!
 //! x(m) = cos²ψ X(p) + sin²ψ z + sin2ψ (r ω_i·Pp) ω_w, z = −αr ω_i,
 //!
-//! where X(p) runs over the paper's ellipse in the plane of incidence.
+//! where X(p) traces the paper's ellipse in the plane of incidence.
 //!
 //! # Which ellipsoids enclose it
 //!
-//! Let q(ζ) ≤ 1 be an ellipse in that plane, with quadratic part q₂ and q(X(p)) = 1 − η for all p,
-//! η ≥ 0. As q(cos²ψ X + sin²ψ z) = cos²ψ q(X) + sin²ψ q(z) − cos²ψ sin²ψ q₂(X − z), the condition
-//! q + w²/ρ² ≤ 1, divided by cos²ψ sin²ψ, reads
+//! Let q(ζ) ≤ 1 be an ellipse in that plane, with quadratic part q₂, and q(X(p)) = 1 − η for all p, η ≥ 0.
+//! Since q(cos²ψ X + sin²ψ z) = cos²ψ q(X) + sin²ψ q(z) − cos²ψ sin²ψ q₂(X − z), the condition q + w²/ρ² ≤ 1,
+//! divided by cos²ψ sin²ψ, reads
 //!
 //! 4(r ω_i·Pp)²/ρ² − q₂(X − z) ≤ η/sin²ψ + (1 − q(z))/cos²ψ,
 //!
 //! and the least value of the right-hand side over ψ is (√η + √(1 − q(z)))².
 //!
-//! Take for q the paper's ellipse enlarged about its centre so that η = x, that is, by 1/√(1−x). In
-//! units of its semi-axes X(p) runs over a circle, at twice the angle of p; so both (ω_i·Pp)² and
-//! q₂(X − z) are sinusoids of that angle, and the least ρ that fulfils the condition for every p
-//! follows from the amplitude of their sum. With θ the angle of incidence, L = kμ² + α²,
-//! β = (1 + α²)/(1 + α² + k sin²θ), and d = ½(1 − Q), where Q is the value at z of the unenlarged q,
+//! Choose q as the paper's ellipse, enlarged about its centre by 1/√(1−x), so that η = x. In units of its
+//! semi-axes X(p) traces a circle, at twice the angle of p. So both (ω_i·Pp)² and q₂(X − z) are sinusoids of
+//! that angle. The smallest ρ that satisfies the condition for every p follows from the amplitude of their
+//! sum. With the angle of incidence θ, L = kμ² + α², β = (1 + α²)/(1 + α² + k sin²θ), and d = ½(1 − Q), where
+//! Q is the value at z of the unenlarged q,
 //!
 //! d = 2α²k sin²θ (1 + α² + k sin²θ)/(1 + α²)², y = x + √(x (2d + x(1 − 2d))),
 //!
 //! **ρ²/r² = (y L + (1−x) d β)/(y + (1−x) d)**:
 //!
-//! a weighted mean of L, the square of how far the lobe really extends across the plane of incidence,
-//! and β, which is what the unenlarged ellipse needs. At normal incidence and for α = 1 both are 1.
+//! a weighted mean of L and β. √L is the half-width of the lobe across the plane of incidence, over r, and √β
+//! is the semi-axis for the unenlarged ellipse. At normal incidence and for α = 1 both are 1.
 //!
-//! *Any* x in [0, 1) encloses. The volume is least where d ln(ρ²)/dx = −2/(1−x). For x far above d,
-//! where y ≈ 2x + d, and far below it, where y ≈ √(2dx), this is a quadratic equation, the latter
-//! after its cubic term is dropped. The first is taken if it comes out above d/3: within 3 % of the least
-//! volume.
+//! *Any* x in [0, 1) gives an enclosing ellipsoid. The volume is smallest where d ln(ρ²)/dx = −2/(1−x). For x
+//! far above d, y ≈ 2x + d; far below it, y ≈ √(2dx). In both cases this is a quadratic equation, in the
+//! second after its cubic term is dropped. The solution of the first is used if it is above d/3. The volume
+//! is then within 3 % of the smallest.
 
 use core::f32::consts::FRAC_1_PI;
 
@@ -60,12 +60,14 @@ const AXES_TILT_ROUNDINGS: f32 = 4.0;
 /// Pays for the rounding of the semi-axes.
 const SEMI_AXIS_ROUNDINGS: u16 = 64;
 
-/// An ellipsoid around the paper's ellipse in the plane of incidence that is as narrow across it as the lobe
-/// allows, for a lobe scaled by the joint maximum of F and G2 ([`max_reflected`](GgxLobe::max_reflected)).
+/// Bounds the lobe by an ellipsoid around the paper's ellipse in the plane of incidence, which is as narrow
+/// across that plane as the lobe allows. F and G2 are at their joint maximum
+/// ([`max_reflected`](GgxLobe::max_reflected)).
 ///
-/// In closed form and proved, where [`Tight`](crate::Tight) is smaller, and from a table.
-/// Never larger than the paper's [`Spheroid`](crate::Spheroid) but for rounding; for metals about as
-/// large at normal incidence and a fraction of it at grazing, for dielectrics a fraction throughout.
+/// The ellipsoid is in closed form, with a proof; [`Tight`](crate::Tight) is smaller and needs a table. But
+/// for rounding, it is never larger than the paper's [`Spheroid`](crate::Spheroid). For metals it is about as
+/// large at normal incidence, and a fraction of it at grazing incidence. For dielectrics it is always a
+/// fraction.
 impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<GgxLobe<F, G>> for Triaxial {
     type Shape = Ellipsoid;
 
@@ -98,7 +100,7 @@ pub(super) fn ndf_radius_squared<N: Single, F: Fresnel, G: MaskingShadowing>(
     lobe.max_reflected::<F, G>(fresnels) * lobe.masking_over_four_cosines() * FRAC_1_PI
 }
 
-/// The ellipsoids around the surface of r = `radius` and α = `alpha`, for the directions of `lobe`.
+/// The ellipsoids around the surfaces with r = `radius` and α = `alpha`, for the directions of `lobe`.
 #[inline(always)]
 pub(super) fn ellipsoids_around<N: Single>(
     lobe: &GgxLobes<N>,
@@ -115,7 +117,6 @@ pub(super) fn ellipsoids_around<N: Single>(
         radius * shape.in_plane,
         radius * shape.across,
     );
-    // The rounding of the axes to f32 tilts them by √3·1.5u at most.
     let shortest = semi_axes.y.min(semi_axes.z);
     let tilt = semi_axes.x / shortest * (AXES_TILT_ROUNDINGS * UNIT_ROUNDOFF);
     Ellipsoids {
@@ -125,7 +126,7 @@ pub(super) fn ellipsoids_around<N: Single>(
     }
 }
 
-/// The semi-axes over those of the paper's spheroid.
+/// The semi-axes relative to those of the paper's spheroid.
 #[derive(Clone, Copy)]
 struct Proportions<N> {
     in_plane: N,
@@ -141,7 +142,7 @@ impl<N: Single> Proportions<N> {
         let sum = alpha_squared + 1.0;
         let exact = alpha_squared * sine_squared + cosine * cosine;
         let beta = sum / (sum + bend);
-        // β − L, which cancels at normal incidence if it is subtracted.
+        // β − L, in a form that does not cancel at normal incidence.
         let excess = bend * (alpha_squared + bend) / (sum + bend);
         let d = alpha_squared * 2.0 * bend * (sum + bend) / (sum * sum);
         let one = d.splat(1.0);
@@ -176,7 +177,7 @@ fn positive_root<N: Single>(a: N, b: N, c: N) -> N {
     c * 2.0 / (b + (b * b + a * 4.0 * c).sqrt())
 }
 
-/// The x of least volume, if it is far above d.
+/// The x of the smallest volume, if it is far above d.
 #[inline(always)]
 fn enlargement_far_above<N: Single>(d: N, exact: N, beta: N, excess: N) -> N {
     let twice = d * 2.0;
@@ -185,13 +186,14 @@ fn enlargement_far_above<N: Single>(d: N, exact: N, beta: N, excess: N) -> N {
     positive_root(exact * 8.0, slope, height).min(d.splat(0.5))
 }
 
-/// The x of least volume, if it is far below d. With √(2dx) = 2ds: s(sL + β/2)(s + ½) = (β − L)/(16d).
+/// The x of the smallest volume, if it is far below d. With √(2dx) = 2ds, s solves
+/// s(sL + β/2)(s + ½) = (β − L)/(16d).
 #[inline(always)]
 fn enlargement_far_below<N: Single>(d: N, exact: N, beta: N, excess: N) -> N {
     let twice = d * 2.0;
     let s = positive_root((beta + exact) * 0.5, beta * 0.25, excess / (twice * 8.0));
     let root = twice * s;
-    // From y − x = root back to x.
+    // Solves y − x = root for x.
     let x = root * 2.0 * root
         / (twice + (twice * twice + twice.one_minus() * 4.0 * root * root).sqrt());
     x.min(d.splat(0.5))

@@ -188,7 +188,7 @@ impl<D: Real<Element = f64>> SurfaceAxes<D> {
     pub fn new<N: Single<Double = D>>(normal: Vector3<N>, tangent: Vector3<N>) -> Self {
         let across = normal.widen().cross(tangent.widen());
         let sine = across.length();
-        let across = divided(across, sine);
+        let across = across / sine;
         let normal = unit(normal);
         Self {
             axes: [across.cross(normal), across, normal],
@@ -201,12 +201,7 @@ impl<D: Real<Element = f64>> SurfaceAxes<D> {
 #[inline(always)]
 pub(crate) fn unit<N: Single>(direction: Vector3<N>) -> Vector3<N::Double> {
     let direction = direction.widen();
-    divided(direction, direction.length())
-}
-
-#[inline(always)]
-fn divided<D: Real>(v: Vector3<D>, length: D) -> Vector3<D> {
-    Vector3::new(v.x / length, v.y / length, v.z / length)
+    direction / direction.length()
 }
 
 impl<F: Fresnel, G: MaskingShadowing> AnisotropicGgxLobe<F, G> {

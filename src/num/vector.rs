@@ -1,6 +1,6 @@
 //! 3-vectors and 3×3 matrices over any [`Real`].
 
-use core::ops::{Add, Mul, Neg, Sub};
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use glam::{Mat3, Vec3};
 
@@ -186,6 +186,15 @@ impl<N: Real> Mul<N> for Vector3<N> {
     #[inline(always)]
     fn mul(self, factor: N) -> Self {
         Self::new(self.x * factor, self.y * factor, self.z * factor)
+    }
+}
+
+impl<N: Real> Div<N> for Vector3<N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, divisor: N) -> Self {
+        Self::new(self.x / divisor, self.y / divisor, self.z / divisor)
     }
 }
 
