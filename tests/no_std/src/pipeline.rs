@@ -20,7 +20,7 @@ pub fn depths() -> Result<DepthInterval, Error> {
     DepthInterval::new(7.0, 11.0)
 }
 
-/// A light on a metal floor, which a photon of 2 W reached from the upper left.
+/// A light on a metal floor, which a photon of 0.1 W reached from the upper left.
 pub fn stretch(light: u32) -> Result<Option<ProjectedEllipsoid>, Error> {
     let incoming = Direction::new(Vec3::new(-1.0, 1.0, 0.0))?;
     let gold = Conductor::new(0.16, 3.5)?;
@@ -32,7 +32,7 @@ pub fn stretch(light: u32) -> Result<Option<ProjectedEllipsoid>, Error> {
             incoming,
         },
     );
-    let light_there = Vpl::new(Vec3::ZERO, 2.0, lobe)?;
+    let light_there = Vpl::new(Vec3::ZERO, 0.1, lobe)?;
     let bound = light_there.bound(&Roulette::new(0.01)?, Seed(0).frame(0).xi(light));
     Ok(bound.project(&camera()?))
 }
