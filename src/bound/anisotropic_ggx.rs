@@ -175,9 +175,9 @@ impl<D: Double> Incidence<D> {
 
     /// The ellipsoids of the module documentation, for r′ = `scale`.
     ///
-    /// A ball is added, whose radius d is the distance by which rounding to `f32` moves a point. For any t >
-    /// 0, the sum of an ellipsoid with the semi-axes aᵢ and this ball lies in the ellipsoid with the squared
-    /// semi-axes (1+t)aᵢ² + (1+1/t)d².
+    /// A ball is added, whose radius d is the distance by which rounding to `f32` moves a point. For any
+    /// t > 0, the sum of an ellipsoid with the semi-axes aᵢ and this ball lies in the ellipsoid with the
+    /// squared semi-axes (1+t)aᵢ² + (1+1/t)d².
     #[inline(always)]
     fn ellipsoids<N: Single<Double = D>>(&self, scale: N) -> Ellipsoids<N> {
         let (center, columns) = self.image_of_ball();

@@ -14,8 +14,8 @@
 //!
 //! # Narrow lobes, m ≥ 1: the light and a ring
 //!
-//! With the light as a pole, c = a, and the ring at z₁ = 4a/3, b² = (9/8)h(z₁). It is tangent if h′(z₁) =
-//! −h(z₁)/(2a − z₁). With q = p − 1 = (m−1)/(m+1) this is (q+2)z₁^q = 3z₁, or
+//! With the light as a pole, c = a, and the ring at z₁ = 4a/3, b² = (9/8)h(z₁). It is tangent if
+//! h′(z₁) = −h(z₁)/(2a − z₁). With q = p − 1 = (m−1)/(m+1) this is (q+2)z₁^q = 3z₁, or
 //!
 //! cos²γ₁ = (3m+1)/(3m+3), **z₁ = (1 − d/3)^{1/d}, a = ¾z₁, b² = 4a²/(3m+1)**, d = 2/(m+1).
 //!
@@ -24,10 +24,9 @@
 //!
 //! z₁ is between 2/3 for m = 1 and e^{−1/3} for m = ∞. It is computed by a polynomial in d, since the error
 //! of a power would grow with m. Scaling the ellipsoid about the light, which it contains, pays for the
-//! error. For
-//! |d| ≤ 3 the real part of ln z₁ = −⅓∫₀¹ ds/(1 − sd/3) is below −1/6, so |z₁| < 0.85. The polynomial interpolates
-//! z₁ at the Chebyshev points of \[0, 1\]. With ρ = 5 + √24, for the ellipse through 3 with the foci 0 and 1,
-//! it is off by at most 4·0.85 ρ⁻⁶/(ρ − 1) = 4.1·10⁻⁷ [Trefethen 2013, Theorem 8.2].
+//! error. For |d| ≤ 3 the real part of ln z₁ = −⅓∫₀¹ ds/(1 − sd/3) is below −1/6, so |z₁| < 0.85. The
+//! polynomial interpolates z₁ at the Chebyshev points of \[0, 1\]. With ρ = 5 + √24, for the ellipse through
+//! 3 with the foci 0 and 1, it is off by at most 4·0.85 ρ⁻⁶/(ρ − 1) = 4.1·10⁻⁷ [Trefethen 2013, Theorem 8.2].
 //!
 //! # Broad lobes, m < 1: the tip and a ring
 //!
@@ -39,8 +38,9 @@
 //! *Any* of them encloses the surface: f″ = 2/a² − (2 + p(1−p)z^{p−2})/b² increases with z. If it were
 //! positive at z₁, f would increase from f(z₁) = 0 to f(1) = 0, a contradiction. So f is concave up to some
 //! point beyond z₁, and at most f(z₁) there. Beyond that point it is convex, and at most the larger of its
-//! values at both ends. The volume is smallest at a root of (1+p)z^p − pz^{p−1} + 2z − 3z². With z₁ = p/(1 +
-//! 2p + 0.6p(1−p)) it is within 4·10⁻⁵ of that. For m = 0, half a ball, z₁ = 0, a = ¾ and b² = 9/8.
+//! values at both ends. The volume is smallest at a root of (1+p)z^p − pz^{p−1} + 2z − 3z². With
+//! z₁ = p/(1 + 2p + 0.6p(1−p)) it is within 4·10⁻⁵ of that. For m = 0, half a ball, z₁ = 0, a = ¾ and
+//! b² = 9/8.
 
 use super::Ellipsoids;
 use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3, power};

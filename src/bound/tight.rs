@@ -6,8 +6,8 @@
 //! # The surface as the image of a sphere
 //!
 //! Let P = diag(α, α, 1) in the frame (tangent, bitangent, n), and let m be any unit vector. With the half
-//! vector along Pm, the surface l = (r/α)‖Pm‖² that the NDF alone gives is, relative to the light, x(m) =
-//! (r/α) (2(ω_i·Pm) Pm − ω_i ‖Pm‖²). With the angle of incidence θ and L = kμ² + α², let
+//! vector along Pm, the surface l = (r/α)‖Pm‖² that the NDF alone gives is, relative to the light,
+//! x(m) = (r/α) (2(ω_i·Pm) Pm − ω_i ‖Pm‖²). With the angle of incidence θ and L = kμ² + α², let
 //!
 //! cosδ = μ/√L, sinδ = α sinθ/√L, that is, tanδ = α tanθ.
 //!
@@ -16,9 +16,9 @@
 //! ζ₁ = m₃² − α²m₁² − α² cos2θ m₂², ζ₂ = 2m₁m₃ + α sin2θ m₂², ζ₃ = 2m₂ (cosδ m₃ − sinδ m₁).
 //!
 //! Above the surface the isosurface is this times s, where s² = F G2/(F(μ) G1(μ)) and r² = F(μ) G1(μ)/(4πμ).
-//! With N = α²(1−m₃²) + m₃² and a = cosδ m₃ − sinδ m₁, the cosine of the half angle is a√(L/N), and μ_o/√L =
-//! 2am₃/N − cosδ. √L is also the root in G1, and μ/√L = cosδ, α/√L = sinδ/sinθ. So for small α the shape
-//! depends on μ and α only through δ, which determines how much of the lobe the horizon cuts off.
+//! With N = α²(1−m₃²) + m₃² and a = cosδ m₃ − sinδ m₁, the cosine of the half angle is a√(L/N), and
+//! μ_o/√L = 2am₃/N − cosδ. √L is also the root in G1, and μ/√L = cosδ, α/√L = sinδ/sinθ. So for small α the
+//! shape depends on μ and α only through δ, which determines how much of the lobe the horizon cuts off.
 //!
 //! # The table
 //!
@@ -46,12 +46,12 @@
 //! on roughness, incidence and F0. The extra is up to 6 %. For smooth metals at oblique incidence it is
 //! nearly zero, besides the margin of the fit itself (`examples/tabulate`).
 //!
-//! The interpolated ellipsoids are proved to enclose the surface for every √α in \[0, 1\], tan(θ/2) +
-//! tan(δ/2) in \[0, 2\] and ∜F0 in \[1/4, 1\]. The statement is ‖y‖² ≤ 1 − 2·10⁻⁴ for each point c + A y of
-//! the surface. It has five variables, and `tests/certificate` proves it box by box. Over a box ‖y‖² is
-//! enclosed by a quadratic polynomial and a bound of its remainder, rounded outward in every step. The 960
-//! cells take 14 million boxes, little more than a minute on one core. The gap of 10⁻⁴ of a radius pays for
-//! the rounding to `f32` of the three coordinates and of the interpolation.
+//! The interpolated ellipsoids are proved to enclose the surface for every √α in \[0, 1\],
+//! tan(θ/2) + tan(δ/2) in \[0, 2\] and ∜F0 in \[1/4, 1\]. The statement is ‖y‖² ≤ 1 − 2·10⁻⁴ for each point
+//! c + A y of the surface. It has five variables, and `tests/certificate` proves it box by box. Over a box
+//! ‖y‖² is enclosed by a quadratic polynomial and a bound of its remainder, rounded outward in every step.
+//! The 960 cells take 14 million boxes, little more than a minute on one core. The gap of 10⁻⁴ of a radius
+//! pays for the rounding to `f32` of the three coordinates and of the interpolation.
 //!
 //! ```text
 //! cargo run --release --example tabulate -- --prove
@@ -266,9 +266,9 @@ impl<N: Single> Axes<N> {
     /// The semi-axes are the singular values of the triangular matrix M with these columns. Let T be the
     /// trace of M Mᵀ, D the difference on its diagonal, m its element off the diagonal, and h = √(D² + 4m²)
     /// the difference of its eigenvalues. The longer semi-axis is √((T + h)/2). The shorter is the
-    /// determinant of M over the longer, which does not cancel. The longer lies along (D + h, 2m) and (2m, h
-    /// − D); the one that does not cancel is used. Half of it, (l, m) with 2l = |D| + h, has the length
-    /// √(lh).
+    /// determinant of M over the longer, which does not cancel. The longer lies along (D + h, 2m) and
+    /// (2m, h − D); the one that does not cancel is used. Half of it, (l, m) with 2l = |D| + h, has the
+    /// length √(lh).
     #[inline(always)]
     fn of_ellipse(along: N, slant: N, aside: N) -> Self {
         let (first, mixed) = (along * along, along * slant);

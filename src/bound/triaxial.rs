@@ -27,7 +27,7 @@
 //!
 //! 4(r ω_i·Pp)²/ρ² − q₂(X − z) ≤ η/sin²ψ + (1 − q(z))/cos²ψ,
 //!
-//! and the least value of the right-hand side over ψ is (√η + √(1 − q(z)))².
+//! and the smallest value of the right-hand side over ψ is (√η + √(1 − q(z)))².
 //!
 //! Choose q as the paper's ellipse, enlarged about its centre by 1/√(1−x), so that η = x. In units of its
 //! semi-axes X(p) traces a circle, at twice the angle of p. So both (ω_i·Pp)² and q₂(X − z) are sinusoids of

@@ -68,8 +68,8 @@ impl Roulette {
         }
     }
 
-    /// The range l_max = √(I/(δξ)) of a light in a direction in which its radiant intensity is `intensity` =
-    /// I: the radius of its isosurface in that direction [Tokuyoshi & Harada 2017, Eq. 5].
+    /// The range l_max = √(I/(δξ)) of a light in a direction in which its radiant intensity is
+    /// `intensity` = I: the radius of its isosurface in that direction [Tokuyoshi & Harada 2017, Eq. 5].
     ///
     /// In the unit of length. Zero for I = 0, infinite for I = ∞.
     #[inline]

@@ -86,8 +86,8 @@ impl AnisotropicGgx {
         anisotropic_masking_root(self.roughness, direction.into())
     }
 
-    /// Smith's masking function G1 = 2z/(z + √(α_x²x² + α_y²y² + z²)) for the unit vector `direction`
-    /// = (x, y, z): the visible share of the facets that face the viewer [Heitz 2014].
+    /// Smith's masking function G1 = 2z/(z + √(α_x²x² + α_y²y² + z²)) for the unit vector
+    /// `direction` = (x, y, z): the visible share of the facets that face the viewer [Heitz 2014].
     ///
     /// In \[0, 1\]. Zero for z ≤ 0 and for NaN.
     #[must_use]

@@ -196,8 +196,8 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
     /// angle is at most ½(θ_i + θ_o). So F, which is quasi-convex, is at most the larger of F(1) and F(cos
     /// ½(θ_i + θ_o)). This larger one does not fall with θ_o, and G2 does not rise. So on a segment of θ_o
     /// the product is at most the former at its end times the latter at its start. With eight segments the
-    /// bound is within 10 % of the maximum on average, and within 30 % at worst, for Schlick's factor with F0
-    /// ≥ 0.02.
+    /// bound is within 10 % of the maximum on average, and within 30 % at worst, for Schlick's factor with
+    /// F0 ≥ 0.02.
     pub fn max_reflected(&self) -> f32 {
         self.lanes().max_reflected::<F, G>(&[self.fresnel])
     }
