@@ -161,6 +161,11 @@ impl<P: Projected> LightBatch<P> {
         self.len == 0
     }
 
+    /// The elements that a list needs room for while it is written: a whole chunk for the last light.
+    pub(super) fn room_for_a_list(&self) -> usize {
+        (self.chunks().len() + 1) * LANES
+    }
+
     /// Removes all lights and keeps the memory.
     pub fn clear(&mut self) {
         self.len = 0;
@@ -276,11 +281,15 @@ impl<P: Projected> Extend<(u32, P)> for LightBatch<P> {
     }
 }
 
+/// The least number of values that a buffer has room for.
+const LEAST_ROOM: usize = 32;
+
 /// Makes room for `len` values. Where the vector must grow, it grows by half as many again, since the number
 /// that a frame needs is random.
 pub(super) fn grow<V: Copy>(values: &mut Vec<V>, len: usize, value: impl FnOnce() -> V) {
     if values.len() < len {
-        values.resize(len + len / 2, value());
+        // Small numbers of lights vary most.
+        values.resize((len + len / 2).max(LEAST_ROOM), value());
     }
 }
 

@@ -55,6 +55,10 @@ impl<P: BoxTest> Scratch<P> {
         area: Area,
         lists: &mut LightLists,
     ) {
+        if area.is_all_of(tiles) {
+            // No block has more lights, so later frames need no more room. Workers have a share each.
+            grow(&mut self.rows, lights.chunks().len(), Row::zero);
+        }
         let mut walk = Walk {
             tiles,
             lists,

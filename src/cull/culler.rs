@@ -187,17 +187,18 @@ impl<P: BoxTest> Culler<P> {
         lists.reset(all.size(), tiles.intervals() as usize);
         scratch.begin(if self.use_blocks { all.levels() } else { 0 });
         dispatch!(self.level, simd => scratch.cull(simd, batch, tiles, all, lists));
-        finish(scratch.counters, tiles, lists)
+        finish(scratch.counters, batch, tiles, lists)
     }
 }
 
 /// Finishes `lists`, and completes `counters` with the number of pairs.
-pub(super) fn finish(
+pub(super) fn finish<P: BoxTest>(
     counters: CullCounters,
+    batch: &LightBatch<P>,
     tiles: &TileDepths,
     lists: &mut LightLists,
 ) -> Result<CullCounters, Error> {
-    lists.finish();
+    lists.finish(batch.room_for_a_list());
     if u32::try_from(lists.len()).is_err() {
         lists.reset([0; 2], 0);
         return Err(Error::Size {

@@ -33,7 +33,7 @@ pub(super) fn append_list_exactly<S: Simd, P: BoxTest>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let places = lists.room_for((lights.chunks().len() + 1) * LANES);
+            let places = lists.room_for(lights.room_for_a_list());
             let places_of = |chunk: usize, _: &Chunk<P>, part: usize| {
                 let first = (chunk * LANES + part * S::u32s::LEN) as u32;
                 S::u32s::from_slice(simd, &FIRST_PLACES[..S::u32s::LEN]) + first

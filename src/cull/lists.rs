@@ -143,11 +143,11 @@ impl LightLists {
         &mut self.lights[self.len..]
     }
 
-    /// Reserves room for half as many lights again, if the lists grew. So frames after the first seldom
-    /// allocate.
-    pub(super) fn finish(&mut self) {
+    /// Reserves room for half as many lights again and for a list of `longest` lights, if the lists grew. So
+    /// frames after the first seldom allocate.
+    pub(super) fn finish(&mut self, longest: usize) {
         if self.has_grown {
-            self.room_for(self.len / 2);
+            self.room_for(self.len / 2 + longest);
             self.has_grown = false;
         }
     }

@@ -80,7 +80,7 @@ impl<P: BoxTest + Send + Sync> Culler<P> {
             counters.empty += worker.scratch.counters.empty;
             counters.rejected_exactly += worker.scratch.counters.rejected_exactly;
         }
-        finish(counters, tiles, lists)
+        finish(counters, batch, tiles, lists)
     }
 
     /// Assigns each of `areas`, which are to be subdivided `levels` times, to a worker. Returns their number.
@@ -113,6 +113,6 @@ impl<P: BoxTest> Worker<P> {
         } = self;
         lists.reset(area.size(), tiles.intervals() as usize);
         dispatch!(level, simd => scratch.cull(simd, batch, tiles, *area, lists));
-        lists.finish();
+        lists.finish(batch.room_for_a_list());
     }
 }

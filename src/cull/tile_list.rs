@@ -49,7 +49,7 @@ pub(super) fn append_list<S: Simd, P: BoxTest>(
     tile: &TileBounds<F32Lanes<S>>,
     lists: &mut LightLists,
 ) -> u64 {
-    let room = lists.room_for((lights.chunks().len() + 1) * LANES);
+    let room = lists.room_for(lights.room_for_a_list());
     let indices = |_, chunk: &Chunk<P>, part| {
         let lights = &chunk.lights[part * S::u32s::LEN..][..S::u32s::LEN];
         S::u32s::from_slice(simd, lights)
