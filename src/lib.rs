@@ -131,7 +131,7 @@
 //!
 //! The crate has lobes and their bounds, roulette, projection, tile tests, culling and interleaved sampling.
 //! It does not find lit points, trace visibility, shade, denoise, run on a GPU or store a scene.
-//! `examples/render.rs` shows one way to do these.
+//! `examples/render` shows one way to do these.
 //!
 //! # Features
 //!

@@ -1,6 +1,6 @@
 //! The table of the tight bound: nearly smallest ellipsoids around GGX lobes, over three coordinates.
 //!
-//! `examples/tabulate.rs` makes it, and proves that its ellipsoids enclose the lobes (`tests/certificate`).
+//! `examples/tabulate` makes it, and proves that its ellipsoids enclose the lobes (`tests/support`, `certificate`).
 
 /// The number of knots of √α, evenly spaced in \[0, 1\].
 pub(crate) const ROUGHNESSES: usize = 9;
@@ -67,7 +67,7 @@ impl Axis {
     }
 }
 
-/// The ellipsoid at a knot, for `tests/certificate`.
+/// The ellipsoid at a knot, for `certificate` in `tests/support`.
 #[allow(dead_code, reason = "the crate itself only interpolates")]
 pub(crate) fn knot([i, j, k]: [usize; 3]) -> [f32; NUMBERS] {
     let [a, b, c, d, e, f, ..] = TABLE[(i * INCIDENCES + j) * REFLECTANCES + k];

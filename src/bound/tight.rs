@@ -48,7 +48,7 @@
 //!
 //! The interpolated ellipsoids are proved to enclose the surface for every √α in \[0, 1\],
 //! tan(θ/2) + tan(δ/2) in \[0, 2\] and ∜F0 in \[1/4, 1\]. The statement is ‖y‖² ≤ 1 − 2·10⁻⁴ for each point
-//! c + A y of the surface. It has five variables, and `tests/certificate` proves it box by box. Over a box
+//! c + A y of the surface. It has five variables, and `certificate` in `tests/support` proves it box by box. Over a box
 //! ‖y‖² is enclosed by a quadratic polynomial and a bound of its remainder, rounded outward in every step.
 //! The 960 cells take 14 million boxes, little more than a minute on one core. The gap of 10⁻⁴ of a radius
 //! pays for the rounding to `f32` of the three coordinates and of the interpolation.
