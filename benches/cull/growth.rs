@@ -4,10 +4,10 @@
 use std::f32::consts::{PI, TAU};
 
 use stochastic_light_culling::{
-    Camera, DepthInterval, Ellipsoid, LightBatch, ProjectedEllipsoid, Seed, TileDepths,
-    TileRectangle,
+    Camera, DepthInterval, Ellipsoid, LightBatch, ProjectedEllipsoid, TileDepths, TileRectangle,
     glam::{Mat3, Vec2, Vec3},
 };
+use support::workload::SplitMix64;
 
 /// A frame of (15·`scale`)×(9·`scale`) tiles and 1024·`scale`² lights, from near to far.
 pub fn frame(scale: u32) -> (LightBatch<ProjectedEllipsoid>, TileDepths) {
@@ -26,8 +26,9 @@ pub fn frame(scale: u32) -> (LightBatch<ProjectedEllipsoid>, TileDepths) {
 }
 
 fn lights(scale: u32, slopes: Vec2, camera: &Camera) -> LightBatch<ProjectedEllipsoid> {
+    let mut random = SplitMix64(3);
     let mut lights: Vec<_> = (0..1024 * scale * scale)
-        .map(|light| (light, ellipsoid(light, scale, slopes)))
+        .map(|light| (light, ellipsoid(&mut random, light, scale, slopes)))
         .collect();
     lights.sort_by(|(_, a), (_, b)| b.center().z.total_cmp(&a.center().z));
     let mut batch = LightBatch::new();
@@ -39,14 +40,14 @@ fn lights(scale: u32, slopes: Vec2, camera: &Camera) -> LightBatch<ProjectedElli
     batch
 }
 
-fn ellipsoid(light: u32, scale: u32, slopes: Vec2) -> Ellipsoid {
-    let unit = |frame| Seed(3).frame(frame).xi(light).get();
-    let depth = (1.0 + unit(0) * (50_f32.powi(3) - 1.0)).cbrt();
-    let across = Vec2::new(2.0 * unit(1) - 1.0, 2.0 * unit(2) - 1.0) * slopes * depth;
-    let short = 0.15 * 20_f32.powf(unit(3)) / (scale as f32).powf(0.55);
+fn ellipsoid(random: &mut SplitMix64, light: u32, scale: u32, slopes: Vec2) -> Ellipsoid {
+    let mut unit = || random.unit() as f32;
+    let depth = (1.0 + unit() * (50_f32.powi(3) - 1.0)).cbrt();
+    let across = Vec2::new(2.0 * unit() - 1.0, 2.0 * unit() - 1.0) * slopes * depth;
+    let short = 0.15 * 20_f32.powf(unit()) / (scale as f32).powf(0.55);
     let alpha = [0.05, 0.1, 0.2, 0.4][light as usize % 4];
     let long = short * (1.0 + alpha * alpha) / (2.0 * alpha);
-    let (h, turn) = (2.0 * unit(4) - 1.0, TAU * unit(5));
+    let (h, turn) = (2.0 * unit() - 1.0, TAU * unit());
     let flat = (1.0 - h * h).max(0.0).sqrt();
     let u = Vec3::new(flat * turn.cos(), flat * turn.sin(), h).normalize();
     let v = u.any_orthonormal_vector();
@@ -68,14 +69,15 @@ fn tiles(scale: u32, slopes: Vec2) -> TileDepths {
         TileRectangle::new(corner([x, y]), corner([x + 1, y + 1])).expect("in order")
     };
     let mut tiles = TileDepths::from_rectangles(size, 2, rectangle).expect("not empty");
+    let mut random = SplitMix64(4);
     for y in 0..size[1] {
         for x in 0..size[0] {
-            let unit = |seed| Seed(seed).frame(y).xi(x).get();
             let (tx, ty) = (x as f32 / scale as f32, y as f32 / scale as f32);
             let waves = 0.3 * (0.45 * tx + 0.3).sin() * (0.6 * ty).cos();
             let f = 0.5 + waves + 0.15 * (0.9 * tx - 0.7 * ty).sin();
-            let near = 1.5 * 20_f32.powf(f) * (1.0 + 0.05 * (unit(0) - 0.5));
-            let far = (near * 2_f32.powf((0.07 + 0.93 * unit(1)) / scale as f32)).min(50.0);
+            let near = 1.5 * 20_f32.powf(f) * (1.0 + 0.05 * (random.unit() as f32 - 0.5));
+            let far =
+                (near * 2_f32.powf((0.07 + 0.93 * random.unit() as f32) / scale as f32)).min(50.0);
             let middle = 0.5 * (near + far);
             let halves = [[near, middle], [middle, far]];
             tiles.set(

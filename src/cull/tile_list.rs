@@ -90,13 +90,31 @@ pub(super) fn write_touching<S: Simd, P: BoxTest>(
                 }
                 let fields = load_fields(simd, chunk, part);
                 let touching = !P::misses(&fields, &shared, tile);
-                // No branch on whether there are any, since it would often be mispredicted.
-                let chosen = values(first + index, chunk, part).compress(touching);
-                chosen.store_slice(&mut out[end..end + S::u32s::LEN]);
-                end += touching.to_bitmask().count_ones() as usize;
+                let numbers = values(first + index, chunk, part);
+                end += write_chosen::<S>(numbers, touching, &mut out[end..end + S::u32s::LEN]);
             }
         }
         first += LANES;
     }
     [end, tested * LANES]
+}
+
+/// Writes those of `numbers` that are `chosen` to the front of `out`. The rest of it may change too. Returns
+/// how many are chosen.
+///
+/// Does not branch on which lanes are chosen, since it would often be mispredicted.
+#[inline(always)]
+fn write_chosen<S: Simd>(numbers: S::u32s, chosen: S::mask32s, out: &mut [u32]) -> usize {
+    let bits = chosen.to_bitmask();
+    if S::u32s::LEN > 4 {
+        numbers.compress(chosen).store_slice(out);
+        return bits.count_ones() as usize;
+    }
+    // SSE2 has no instruction to compress. Each number is overwritten by the next one unless it is chosen.
+    let mut end = 0;
+    for (lane, number) in numbers.as_slice().iter().enumerate() {
+        out[end] = *number;
+        end += (bits >> lane & 1) as usize;
+    }
+    end
 }

@@ -152,8 +152,8 @@ pub fn halves([near, far]: [f64; 2]) -> [DepthInterval; 2] {
         .map(|[near, far]| DepthInterval::new(near as f32, far as f32).expect("in order"))
 }
 
-/// The generator of Steele, Lea & Flood 2014.
-struct SplitMix64(u64);
+/// The generator of Steele, Lea & Flood 2014. No change of the crate changes its numbers.
+pub struct SplitMix64(pub u64);
 
 impl SplitMix64 {
     fn bits(&mut self) -> u64 {
@@ -164,7 +164,7 @@ impl SplitMix64 {
     }
 
     /// In [0, 1).
-    fn unit(&mut self) -> f64 {
+    pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 * (-53f64).exp2()
     }
 }
