@@ -50,7 +50,7 @@
 
 use super::ellipsoid::Ellipsoids;
 use super::principal_axes::principal_axes;
-use super::shape::{MAX_QUADS, Quads};
+use super::shape::{Quads, padded};
 use super::triaxial::{ellipsoids_around, ndf_radius_squared};
 use super::{BoundStrategy, Bounded, Ellipsoid, Triaxial};
 use crate::lobe::{AnisotropicGgxLobe, Fresnel, GgxLobes, MaskingShadowing, SurfaceAxes};
@@ -78,11 +78,15 @@ impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<AnisotropicGgxLobe<F, G>> fo
     fn to_quads(&self, lobe: &AnisotropicGgxLobe<F, G>) -> (Quads<f32>, F) {
         let isotropic = lobe.at_any_azimuth();
         let ([along, across], tangent) = (lobe.ggx().roughness(), lobe.tangent());
-        let mut quads = [[0.0; 4]; MAX_QUADS];
-        [quads[0], quads[1]] = isotropic.quads();
-        quads[2] = [tangent.x, tangent.y, tangent.z, isotropic.ggx().roughness()];
-        quads[3] = [along, across, 0.0, 0.0];
-        (quads, *lobe.fresnel())
+        let [normal, incoming, smoother] = isotropic.quads();
+        let tangent_and_smoother = [tangent.x, tangent.y, tangent.z, smoother[0]];
+        let quads = [
+            normal,
+            incoming,
+            tangent_and_smoother,
+            [along, across, 0.0, 0.0],
+        ];
+        (padded(quads), *lobe.fresnel())
     }
 
     #[inline(always)]
@@ -90,7 +94,7 @@ impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<AnisotropicGgxLobe<F, G>> fo
         let [x, y, z, smoother] = quads[2];
         let [along, across, ..] = quads[3];
         let tangent = Vector3::new(x, y, z);
-        let isotropic = GgxLobes::from_quads([quads[0], quads[1]], smoother);
+        let isotropic = GgxLobes::from_quads([quads[0], quads[1], [smoother; 4]]);
         let is_isotropic = along.eq(across);
         let radius_squared = ndf_radius_squared::<N, F, G>(&isotropic, fresnels);
         if N::is_known_false(!is_isotropic) {

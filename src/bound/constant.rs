@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::shape::{MAX_QUADS, Quads};
+use super::shape::{Quads, padded};
 use super::sphere::Spheres;
 use super::{BoundStrategy, Bounded, Paper, Sphere};
 use crate::lobe::ConstantLobe;
@@ -25,7 +25,7 @@ impl BoundStrategy<ConstantLobe> for Paper {
 
     #[inline(always)]
     fn to_quads(&self, _: &ConstantLobe) -> (Quads<f32>, ()) {
-        ([[0.0; 4]; MAX_QUADS], ())
+        (padded([]), ())
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 use super::cosine_power::Revolved;
 use super::ellipsoid::Ellipsoids;
-use super::shape::{MAX_QUADS, Quads};
+use super::shape::{Quads, padded};
 use super::sphere::Spheres;
 use super::{BoundStrategy, Bounded, Ellipsoid, Paper, Shape, Sphere, Tight};
 use crate::lobe::LambertLobe;
@@ -20,9 +20,7 @@ const RADIUS_ROUNDINGS: u16 = 16;
 #[inline(always)]
 fn to_quads(lobe: &LambertLobe) -> Quads<f32> {
     let n = lobe.normal();
-    let mut quads = [[0.0; 4]; MAX_QUADS];
-    quads[0] = [lobe.albedo_root(), n.x, n.y, n.z];
-    quads
+    padded([[lobe.albedo_root(), n.x, n.y, n.z]])
 }
 
 /// R = √(ρ/π), and n. R is a product of two roots, since the product with a subnormal albedo would lose

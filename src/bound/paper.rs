@@ -2,7 +2,7 @@
 
 use core::f32::consts::FRAC_1_PI;
 
-use super::shape::{MAX_QUADS, Quads};
+use super::shape::{Quads, padded};
 use super::spheroid::Spheroids;
 use super::{BoundStrategy, Paper, Shape, Spheroid};
 use crate::lobe::{Fresnel, GgxLobe, GgxLobes, MaskingShadowing};
@@ -32,15 +32,12 @@ impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<GgxLobe<F, G>> for Paper {
 
     #[inline(always)]
     fn to_quads(&self, lobe: &GgxLobe<F, G>) -> (Quads<f32>, F) {
-        let mut quads = [[0.0; 4]; MAX_QUADS];
-        [quads[0], quads[1]] = lobe.quads();
-        quads[2][0] = lobe.ggx().roughness();
-        (quads, *lobe.fresnel())
+        (padded(lobe.quads()), *lobe.fresnel())
     }
 
     #[inline(always)]
     fn unit_bounds<N: Single>(&self, quads: &Quads<N>, fresnels: &[F]) -> Spheroids<N> {
-        let lobe = GgxLobes::from_quads([quads[0], quads[1]], quads[2][0]);
+        let lobe = GgxLobes::from_quads([quads[0], quads[1], quads[2]]);
         let is_lit = lobe.incident_cosine.is_positive();
         let reflected = N::select(is_lit, lobe.max_fresnel(fresnels), lobe.roughness.zero());
         let radius_squared = reflected * lobe.masking_over_four_cosines() * FRAC_1_PI;

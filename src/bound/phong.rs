@@ -1,6 +1,6 @@
 use super::cosine_power::Revolved;
 use super::ellipsoid::Ellipsoids;
-use super::shape::{MAX_QUADS, Quads};
+use super::shape::{Quads, padded};
 use super::{BoundStrategy, Bounded, Ellipsoid, Tight};
 use crate::lobe::PhongLobe;
 use crate::num::{Single, Vector3};
@@ -22,10 +22,9 @@ impl BoundStrategy<PhongLobe> for Tight {
     #[inline(always)]
     fn to_quads(&self, lobe: &PhongLobe) -> (Quads<f32>, ()) {
         let axis = lobe.axis();
-        let mut quads = [[0.0; 4]; MAX_QUADS];
-        quads[0] = [axis.x, axis.y, axis.z, lobe.exponent()];
-        quads[1][0] = lobe.unit_reach();
-        (quads, ())
+        let axis_and_exponent = [axis.x, axis.y, axis.z, lobe.exponent()];
+        let reach = [lobe.unit_reach(), 0.0, 0.0, 0.0];
+        (padded([axis_and_exponent, reach]), ())
     }
 
     #[inline(always)]

@@ -13,6 +13,14 @@ pub const MAX_QUADS: usize = 5;
 /// The numbers of a shape or a lobe. Only the first `QUADS` of them are in use.
 pub type Quads<N> = [Quad<N>; MAX_QUADS];
 
+/// The quads in use, `used`, followed by zeros.
+#[inline(always)]
+pub fn padded<const QUADS: usize>(used: [Quad<f32>; QUADS]) -> Quads<f32> {
+    let mut quads = [[0.0; 4]; MAX_QUADS];
+    quads[..QUADS].copy_from_slice(&used);
+    quads
+}
+
 /// A bounding shape around a light: [`Spheroid`](crate::Spheroid), [`Ellipsoid`](crate::Ellipsoid) or
 /// [`Sphere`](crate::Sphere).
 ///

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::shape::{MAX_QUADS, Quads, Shape, ShapeLanes, rounding_of_sum, scaled};
+use super::shape::{Quads, Shape, ShapeLanes, padded, rounding_of_sum, scaled};
 use crate::base::{Error, finite, number_in};
 use crate::num::{Single, Vector3};
 
@@ -120,9 +120,7 @@ impl Shape for Sphere {
 
     #[inline(always)]
     fn to_quads(&self) -> Quads<f32> {
-        let mut quads = [[0.0; 4]; MAX_QUADS];
-        quads[0] = [self.center.x, self.center.y, self.center.z, self.radius];
-        quads
+        padded([[self.center.x, self.center.y, self.center.z, self.radius]])
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 use glam::{Mat3, Vec3};
 
 use super::ellipsoid::Ellipsoids;
-use super::shape::{MAX_QUADS, Quads, Shape, ShapeLanes, rounding_of_sum, scaled};
+use super::shape::{Quads, Shape, ShapeLanes, padded, rounding_of_sum, scaled};
 use super::{Ellipsoid, Sphere};
 use crate::base::Direction;
 use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3, round_up};
@@ -262,10 +262,10 @@ impl Shape for Spheroid {
     #[inline(always)]
     fn to_quads(&self) -> Quads<f32> {
         let (f, u) = (self.focus, self.axis);
-        let mut quads = [[0.0; 4]; MAX_QUADS];
-        quads[0] = [f.x, f.y, f.z, self.radius];
-        quads[1] = [u.x, u.y, u.z, self.roughness];
-        quads
+        padded([
+            [f.x, f.y, f.z, self.radius],
+            [u.x, u.y, u.z, self.roughness],
+        ])
     }
 
     #[inline(always)]

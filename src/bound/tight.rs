@@ -64,7 +64,7 @@ use core::f32::consts::FRAC_1_PI;
 use glam::Vec4;
 
 use super::ellipsoid::Ellipsoids;
-use super::shape::{MAX_QUADS, Quads};
+use super::shape::{Quads, padded};
 use super::table::{self, Axis, INCIDENCES, KNOTS, REFLECTANCES, TABLE};
 use super::{BoundStrategy, Bounded, Ellipsoid, Tight, Triaxial};
 use crate::lobe::{
@@ -100,10 +100,9 @@ impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<GgxLobe<F, G>> for Tight {
     #[inline(always)]
     fn to_quads(&self, lobe: &GgxLobe<F, G>) -> (Quads<f32>, F) {
         let FresnelMajorant { base, rise } = lobe.fresnel().majorant();
-        let mut quads = [[0.0; 4]; MAX_QUADS];
-        [quads[0], quads[1]] = lobe.quads();
-        quads[2] = [lobe.ggx().roughness(), base, rise, 0.0];
-        (quads, *lobe.fresnel())
+        let [normal, incoming, [roughness, ..]] = lobe.quads();
+        let quads = [normal, incoming, [roughness, base, rise, 0.0]];
+        (padded(quads), *lobe.fresnel())
     }
 
     #[inline(always)]
@@ -111,8 +110,8 @@ impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<GgxLobe<F, G>> for Tight {
         if !G::IS_AT_MOST_HEIGHT_CORRELATED {
             return BoundStrategy::<GgxLobe<F, G>>::unit_bounds(&Triaxial, quads, fresnels);
         }
-        let [roughness, base, rise, _] = quads[2];
-        let lobe = GgxLobes::from_quads([quads[0], quads[1]], roughness);
+        let [_, base, rise, _] = quads[2];
+        let lobe = GgxLobes::from_quads([quads[0], quads[1], quads[2]]);
         let plane = lobe.plane_of_incidence();
         Section::of(&lobe, plane.sine, [base, rise], fresnels).ellipsoids(&lobe, &plane)
     }

@@ -50,7 +50,7 @@
 use core::f32::consts::FRAC_1_PI;
 
 use super::ellipsoid::Ellipsoids;
-use super::shape::{MAX_QUADS, Quads};
+use super::shape::{Quads, padded};
 use super::{BoundStrategy, Ellipsoid, Triaxial};
 use crate::lobe::{Fresnel, GgxLobe, GgxLobes, MaskingShadowing};
 use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3};
@@ -77,15 +77,12 @@ impl<F: Fresnel, G: MaskingShadowing> BoundStrategy<GgxLobe<F, G>> for Triaxial 
 
     #[inline(always)]
     fn to_quads(&self, lobe: &GgxLobe<F, G>) -> (Quads<f32>, F) {
-        let mut quads = [[0.0; 4]; MAX_QUADS];
-        [quads[0], quads[1]] = lobe.quads();
-        quads[2][0] = lobe.ggx().roughness();
-        (quads, *lobe.fresnel())
+        (padded(lobe.quads()), *lobe.fresnel())
     }
 
     #[inline(always)]
     fn unit_bounds<N: Single>(&self, quads: &Quads<N>, fresnels: &[F]) -> Ellipsoids<N> {
-        let lobe = GgxLobes::from_quads([quads[0], quads[1]], quads[2][0]);
+        let lobe = GgxLobes::from_quads([quads[0], quads[1], quads[2]]);
         let radius = ndf_radius_squared::<N, F, G>(&lobe, fresnels).sqrt();
         ellipsoids_around(&lobe, lobe.roughness, radius)
     }

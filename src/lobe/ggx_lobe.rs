@@ -171,20 +171,21 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         }
     }
 
-    /// The numbers that [`GgxLobes::from_quads`] takes besides α.
+    /// The numbers that [`GgxLobes::from_quads`] takes.
     #[inline]
-    pub(crate) fn quads(&self) -> [Quad<f32>; 2] {
+    pub(crate) fn quads(&self) -> [Quad<f32>; 3] {
         let (n, w) = (self.normal, self.incoming);
         [
             [n.x, n.y, n.z, self.incident_cosine],
             [w.x, w.y, w.z, self.incident_root],
+            [self.ggx.roughness(), 0.0, 0.0, 0.0],
         ]
     }
 
     /// The lobe as a single lane.
     #[inline(always)]
     pub(crate) fn lanes(&self) -> GgxLobes<f32> {
-        GgxLobes::from_quads(self.quads(), self.ggx.roughness())
+        GgxLobes::from_quads(self.quads())
     }
 }
 
@@ -245,8 +246,12 @@ pub(crate) struct PlaneOfIncidence<N> {
 
 impl<N: Single> GgxLobes<N> {
     #[inline(always)]
-    pub fn from_quads(quads: [Quad<N>; 2], roughness: N) -> Self {
-        let [[n_x, n_y, n_z, cosine], [w_x, w_y, w_z, root]] = quads;
+    pub fn from_quads(quads: [Quad<N>; 3]) -> Self {
+        let [
+            [n_x, n_y, n_z, cosine],
+            [w_x, w_y, w_z, root],
+            [roughness, ..],
+        ] = quads;
         Self {
             normal: Vector3::new(n_x, n_y, n_z),
             incoming: Vector3::new(w_x, w_y, w_z),
