@@ -13,7 +13,7 @@ use stochastic_light_culling::{
     NoFresnel, Paper, PhongLobe, Proxy, Roulette, Schlick, Seed, Spheroid, Tight, TileGrid,
     Triaxial, Vpl, Xi,
     glam::{Mat3, Vec3},
-    stretch_matrix, stretch_rotation,
+    rank_along_curve, stretch_matrix, stretch_rotation,
 };
 use support::direct_port;
 
@@ -23,7 +23,7 @@ type Group<'a> = BenchmarkGroup<'a, criterion::measurement::WallTime>;
 
 /// The random number of `light` in `frame`, in [−1, 1].
 fn random(light: u32, frame: u32) -> f32 {
-    2.0 * Seed(1).frame(frame).xi(light).get() - 1.0
+    2.0 * Seed(1).frame(frame).hashed_xi(light).get() - 1.0
 }
 
 fn random_vector(light: u32, first: u32) -> Vec3 {
@@ -167,12 +167,35 @@ fn range(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("range");
     let lights: Vec<u32> = (0..LIGHTS).collect();
     let seed = Seed(1).frame(7);
-    per_item(&mut group, "hash", &lights, |light| seed.xi(*light));
+    per_item(&mut group, "hash", &lights, |light| seed.hashed_xi(*light));
+    per_item(&mut group, "ξ of a light", &lights, |light| {
+        seed.xi(*light)
+    });
+    per_item(&mut group, "ξ of a rank", &lights, |light| {
+        seed.xi_of_rank(*light)
+    });
     let xis: Vec<Xi> = lights.iter().map(|light| seed.xi(*light)).collect();
     let roulette = roulette();
     per_item(&mut group, "scale", &xis, |xi| roulette.scale(1.0, *xi));
     per_item(&mut group, "estimate", &xis, |xi| {
         roulette.estimate(0.001, 2.0, *xi)
+    });
+}
+
+/// Ranks of 65,536 lights on a floor, two walls and in the air. Times are per light.
+fn ranks(criterion: &mut Criterion) {
+    const LIGHTS: u32 = 65_536;
+    let point = |light| {
+        let [x, y, z] = random_vector(light, 0).to_array();
+        Vec3::from([[x, -1.0, z], [-1.0, y, z], [x, y, -1.0], [x, y, z]][light as usize % 4])
+    };
+    let points: Vec<Vec3> = (0..LIGHTS).map(point).collect();
+    let mut ranks = vec![0; points.len()];
+    let mut scratch = vec![0; 2 * points.len()];
+    let mut group = criterion.benchmark_group("range");
+    group.throughput(Throughput::Elements(u64::from(LIGHTS)));
+    group.bench_function("ranks of 65536 points", |bencher| {
+        bencher.iter(|| rank_along_curve(black_box(&points), &mut ranks, &mut scratch));
     });
 }
 
@@ -353,5 +376,5 @@ fn interleave(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(steps, brdf, range, bound, stretch, tile, interleave);
+criterion_group!(steps, brdf, range, ranks, bound, stretch, tile, interleave);
 criterion_main!(steps);

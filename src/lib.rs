@@ -205,7 +205,7 @@ pub use cull::{
 };
 #[cfg(feature = "bytemuck")]
 pub use interop::{GpuEllipsoid, GpuSphere};
-pub use light::{FrameSeed, Roulette, Seed, Vpl, Xi};
+pub use light::{FrameSeed, Roulette, Seed, Vpl, Xi, rank_along_curve};
 pub use lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel,
     FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, Incidence, LambertLobe, Lobe,

@@ -59,7 +59,7 @@ fn single_lights() {
 
                 let (mut sum, mut weights) = (0.0, 0.0);
                 for frame in 0..FRAMES {
-                    let xi = Seed(2026).frame(frame).xi(light);
+                    let xi = Seed(2026).frame(frame).hashed_xi(light);
                     let intensity = vpl.radiant_intensity(outgoing);
                     sum += f64::from(roulette.estimate(intensity, distance_squared, xi));
                     weights += f64::from(roulette.weight(intensity, distance_squared, xi));
@@ -91,7 +91,7 @@ impl Scene {
         let camera = Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 0.9, 1.5, 0.1..100.0).unwrap();
         let interleave = Interleave::new(IMAGE, 2).unwrap();
         let lights = (0..24_u32).map(|i| {
-            let random = |k: u32| 2.0 * Seed(99).frame(k).xi(i).get() - 1.0;
+            let random = |k: u32| 2.0 * Seed(99).frame(k).hashed_xi(i).get() - 1.0;
             let normal = Direction::new(Vec3::new(random(0), -0.5, random(1))).unwrap();
             let slant = Vec3::new(random(2), random(3), random(4));
             let incoming = Direction::new(*normal + 0.9 * slant).unwrap();
@@ -191,9 +191,31 @@ impl Scene {
     }
 }
 
-/// Tile culling, interleaving and roulette together, as a renderer puts them together.
+/// The ξ of a light in one of many draws.
+type Draw = fn(draw: u32, light: u32, interleave: &Interleave) -> Xi;
+
 #[test]
-fn a_small_image() {
+fn a_small_image_with_hashed_numbers() {
+    image_is_exact_in_the_mean(|draw, light, _| Seed(7).frame(draw).hashed_xi(light));
+}
+
+/// Draws are seeds, of which each gives one frame: frames of one seed are not independent.
+#[test]
+fn a_small_image_with_numbers_spread_over_frames() {
+    image_is_exact_in_the_mean(|draw, light, _| Seed(draw).frame(5).xi(light));
+}
+
+#[test]
+fn a_small_image_with_numbers_spread_over_lights_and_frames() {
+    image_is_exact_in_the_mean(|draw, light, interleave| {
+        let (subregion, rank) = interleave.split_light(light);
+        let seed = Seed(draw).subregion(subregion);
+        seed.frame(5).xi_of_rank(rank)
+    });
+}
+
+/// Tile culling, interleaving and roulette together, as a renderer puts them together.
+fn image_is_exact_in_the_mean(draw: Draw) {
     let delta = 0.05;
     let scene = Scene::new();
     let roulette = Roulette::new(delta as f32).unwrap();
@@ -210,7 +232,7 @@ fn a_small_image() {
         let lights: Vec<(Xi, Option<ProjectedEllipsoid>)> = (0_u32..)
             .zip(scene.lights.iter().zip(&unit_bounds))
             .map(|(i, (light, unit_bound))| {
-                let xi = Seed(7).frame(frame).xi(i);
+                let xi = draw(frame, i, &scene.interleave);
                 let scale = roulette.scale(light.flux(), xi);
                 let bound = unit_bound.placed(light.position(), scale);
                 (xi, bound.project(&scene.camera))
@@ -257,88 +279,6 @@ fn a_small_image() {
         agrees(whole, exact_whole, spread, delta),
         "{whole} {exact_whole}"
     );
-}
-
-/// The hash gives every light and frame a number of its own, evenly spread.
-#[test]
-fn hashed_numbers_are_uniform() {
-    const BINS: usize = 64;
-    type Draw = fn(u32) -> Xi;
-    let draws: [Draw; 3] = [
-        |i| Seed(0).frame(0).xi(i),
-        |i| Seed(0).frame(i).xi(0),
-        |i| Seed(5).frame(i / 317).xi(i % 317),
-    ];
-    for draw in draws {
-        let mut bins = [0.0; BINS];
-        for i in 0..FRAMES {
-            let xi = draw(i).get();
-            assert!(xi > 0.0 && xi <= 1.0);
-            bins[((xi * BINS as f32) as usize).min(BINS - 1)] += 1.0;
-        }
-        let expected = f64::from(FRAMES) / BINS as f64;
-        let chi_squared: f64 = bins
-            .iter()
-            .map(|n: &f64| (n - expected).powi(2) / expected)
-            .sum();
-        // 63 degrees of freedom: exceeded by chance once in 10⁴.
-        assert!(chi_squared < 113.5, "{chi_squared}");
-    }
-}
-
-/// Pairs of successive numbers fill the unit square evenly: along lights, along frames, and where frame and
-/// seed are equal, for any seed; 634785765 is the one that the hash's generator takes to zero.
-#[test]
-fn hashed_numbers_show_no_lattice() {
-    const SIDE: usize = 64;
-    const PAIRS: u32 = 1 << 16;
-    let even = |draw: &dyn Fn(u32) -> Xi, lag: u32| {
-        let bin = |i: u32| ((draw(i).get() * SIDE as f32) as usize).min(SIDE - 1);
-        let mut bins = vec![0.0; SIDE * SIDE];
-        for i in 0..PAIRS {
-            bins[bin(i) * SIDE + bin(i + lag)] += 1.0;
-        }
-        let expected = f64::from(PAIRS) / (SIDE * SIDE) as f64;
-        let chi_squared: f64 = bins
-            .iter()
-            .map(|n: &f64| (n - expected).powi(2) / expected)
-            .sum();
-        let freedom = (SIDE * SIDE - 1) as f64;
-        // In standard deviations: a lattice leaves bins empty, or fills them too evenly.
-        ((chi_squared - freedom) / (2.0 * freedom).sqrt()).abs() < 5.0
-    };
-    for seed in [
-        0,
-        1,
-        7,
-        2026,
-        634_785_764,
-        634_785_765,
-        634_785_766,
-        1 << 31,
-        u32::MAX,
-    ] {
-        for lag in [1, 2, 3, 8] {
-            for frame in [0, 1, 634_785_765, seed] {
-                let along_lights = |light| Seed(seed).frame(frame).xi(light);
-                assert!(
-                    even(&along_lights, lag),
-                    "seed {seed}, frame {frame}, lag {lag}"
-                );
-            }
-            for light in [0, 1, 1000] {
-                let along_frames = |frame| Seed(seed).frame(frame).xi(light);
-                assert!(
-                    even(&along_frames, lag),
-                    "seed {seed}, light {light}, lag {lag}"
-                );
-            }
-        }
-    }
-    for light in [0, 1, 1000] {
-        let equal = |frame| Seed(frame).frame(frame).xi(light);
-        assert!(even(&equal, 1), "light {light}");
-    }
 }
 
 /// Corners of the estimator: no light, no distance, and no overflow to NaN.

@@ -13,7 +13,7 @@ use support::workload;
 /// Lights in a ball in front of the camera.
 fn lights<L: Lobe>(lobe: impl Fn(u32, Incidence) -> L) -> Vec<(Vpl<L>, Xi)> {
     let light = |i| {
-        let random = |frame| 2.0 * Seed(1).frame(frame).xi(i).get() - 1.0;
+        let random = |frame| 2.0 * Seed(1).frame(frame).hashed_xi(i).get() - 1.0;
         let vector = |k| Vec3::new(random(k), random(k + 1), random(k + 2));
         let normal = Direction::new(vector(0)).expect("not zero");
         let incoming = Direction::new(*normal + 0.9 * vector(3)).expect("not zero");

@@ -3,7 +3,7 @@
 use stochastic_light_culling::{
     BatchBuilder, Bounded, Camera, CullCounters, Culler, DepthInterval, DepthOrder, Ellipsoid,
     Error, GgxLobe, LightBatch, LightLists, ProjectedEllipsoid, Roulette, Schlick, Seed,
-    TileDepths, TileGrid, Vpl, Xi,
+    TileDepths, TileGrid, Vpl, Xi, glam::Vec3, rank_along_curve,
 };
 
 pub type Light = Vpl<GgxLobe<Schlick>>;
@@ -12,7 +12,7 @@ const SEED: u32 = 0;
 
 /// Lights that do not move, and all memory that a frame needs.
 pub struct LightPass {
-    /// Each with the shape of its range, which no frame changes.
+    /// Each with the shape of its range, which no frame changes. Sorted so that a light's index is its rank.
     lights: Vec<(Light, Ellipsoid)>,
     roulette: Roulette,
     size: [u32; 2],
@@ -34,10 +34,12 @@ impl LightPass {
         tile_size: u32,
     ) -> Result<Self, Error> {
         let grid = TileGrid::new(size, tile_size)?;
+        let roulette = Roulette::new(delta)?;
+        let lights = lights.into_iter().map(with_bound).collect();
         Ok(Self {
             order: DepthOrder::new(),
-            lights: lights.into_iter().map(with_bound).collect(),
-            roulette: Roulette::new(delta)?,
+            lights: sorted_by_rank(lights, &roulette)?,
+            roulette,
             size,
             grid,
             tiles: TileDepths::new(&grid, camera, 2)?,
@@ -117,7 +119,28 @@ fn with_bound(light: Light) -> (Light, Ellipsoid) {
     (light, light.lobe().unit_bound())
 }
 
-/// Each light's, new in each frame, for culling and for shading.
-fn xi(light: u32, frame: u32) -> Xi {
-    Seed(SEED).frame(frame).xi(light)
+/// Sorts lights along a curve through the places that they shine on, so that lights side by side have ξ that
+/// are spread.
+fn sorted_by_rank(
+    lights: Vec<(Light, Ellipsoid)>,
+    roulette: &Roulette,
+) -> Result<Vec<(Light, Ellipsoid)>, Error> {
+    let one = Xi::new(1.0)?;
+    let center = |(light, unit_bound): &(Light, Ellipsoid)| {
+        let scale = roulette.scale(light.flux(), one);
+        unit_bound.placed(light.position(), scale).center()
+    };
+    let centers: Vec<Vec3> = lights.iter().map(center).collect();
+    let (mut ranks, mut scratch) = (vec![0; lights.len()], vec![0; 2 * lights.len()]);
+    rank_along_curve(&centers, &mut ranks, &mut scratch)?;
+    let mut sorted = lights.clone();
+    for (light, rank) in lights.into_iter().zip(ranks) {
+        sorted[rank as usize] = light;
+    }
+    Ok(sorted)
+}
+
+/// The ξ of the light with this rank, new in each frame, for culling and for shading.
+fn xi(rank: u32, frame: u32) -> Xi {
+    Seed(SEED).frame(frame).xi_of_rank(rank)
 }

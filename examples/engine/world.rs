@@ -81,7 +81,7 @@ pub fn lights(count: u32, alpha: f32) -> Result<Vec<Vpl<GgxLobe<Schlick>>>, Erro
     let (ggx, gold) = (Ggx::new(alpha)?, Schlick::new(0.9)?);
     let lamp = Vec3::new(0.0, 6.0, -4.0);
     let light = |i| {
-        let random = |frame| Seed(99).frame(frame).xi(i).get();
+        let random = |frame| Seed(99).frame(frame).hashed_xi(i).get();
         let [x, z] = [1, 2].map(|frame| random(frame) - 0.5);
         let position = Vec3::new(20.0 * x, 0.0, 20.0 * z);
         let incidence = Incidence {

@@ -49,7 +49,8 @@ fn render(arguments: &Arguments) -> Result<(), String> {
         )
     });
     let points = points.map_err(said)?;
-    let lights = Lights::new(&points, &interleave, arguments.seed).map_err(said)?;
+    let lights =
+        Lights::new(&points, &interleave, &arguments.delta, arguments.seed).map_err(said)?;
     let [tiles, pixels] = [arguments.tile, 1].map(|size| {
         Tiles::new(
             &surfaces,

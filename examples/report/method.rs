@@ -1,6 +1,8 @@
 //! Ways to light a frame by its glossy lights.
 
-use common::frame::{BoundKind, Frame, GlossyLight, Slicing, Tiles, Tiling, measure_glossy, timed};
+use common::frame::{
+    BoundKind, Frame, GlossyLight, Slicing, Tiles, Tiling, measure_glossy, redraw, timed,
+};
 use stochastic_light_culling::{Interleave, Seed, Xi, glam::Vec3};
 
 use crate::baseline::{cluster, splat};
@@ -128,13 +130,12 @@ impl<'a> Stage<'a> {
     /// The same lights in as many frames as there are repetitions: only ξ differs.
     pub fn frames(&self) -> Vec<Vec<GlossyLight>> {
         let lights = self.lights(0);
-        let seed = self.subject.seed;
-        let again = |frame| {
-            let drawn = |(light, i): (&GlossyLight, u32)| GlossyLight {
-                xi: Seed(seed).frame(frame).xi(i),
-                ..*light
-            };
-            lights.iter().zip(0..).map(drawn).collect()
+        // Seeds and not frames, for errors of frames are not independent.
+        let again = |repetition| {
+            let mut lights = lights.clone();
+            let seed = Seed(self.subject.seed_of(repetition));
+            redraw(&mut lights, &self.interleave, seed, 0);
+            lights
         };
         (0..self.subject.effort.seeds).map(again).collect()
     }

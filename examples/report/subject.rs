@@ -6,6 +6,7 @@ use stochastic_light_culling::{Camera, Error, Ggx, Interleave, Roulette, Schlick
 
 use crate::baseline::fewer;
 use crate::statistics::Mean;
+use crate::study::DELTA;
 
 /// How much work the studies make of it.
 #[derive(Clone, Copy, Debug)]
@@ -119,7 +120,8 @@ impl<'a> Subject<'a> {
 
     /// Lights from `vpls` rays for the subregions of `interleave`.
     pub fn lights(&self, gloss: Gloss, vpls: u32, interleave: &Interleave, seed: u32) -> Lights {
-        Lights::new(&self.points(gloss, vpls, seed), interleave, seed)
+        let points = self.points(gloss, vpls, seed);
+        Lights::new(&points, interleave, &roulette(DELTA), seed)
             .expect("scenes are checked when they are loaded")
     }
 
@@ -131,7 +133,7 @@ impl<'a> Subject<'a> {
         Frame {
             surfaces: &self.surfaces,
             interleave,
-            roulette: Roulette::new(delta).expect("the studies choose it in range"),
+            roulette: roulette(delta),
             least_distance_squared: self.least_distance_squared,
         }
     }
@@ -197,6 +199,10 @@ impl<'a> Subject<'a> {
         };
         pixels.iter().zip(irradiance).map(radiance).sum::<f64>() / pixels.len().max(1) as f64
     }
+}
+
+fn roulette(delta: f32) -> Roulette {
+    Roulette::new(delta).expect("the studies choose it in range")
 }
 
 /// The irradiance of glossy lights at some pixels.

@@ -46,6 +46,15 @@ pub enum Error {
         /// What it must be.
         valid: &'static str,
     },
+    /// A length or a number of items outside its valid range.
+    Count {
+        /// What is counted.
+        quantity: &'static str,
+        /// The number of them.
+        value: usize,
+        /// What it must be.
+        valid: &'static str,
+    },
     /// A matrix that is not of the required kind.
     Matrix {
         /// What the matrix stands for.
@@ -66,6 +75,11 @@ impl fmt::Display for Error {
                 valid,
             } => write!(f, "{quantity} is {value}, but must be {valid}"),
             Self::Vector {
+                quantity,
+                value,
+                valid,
+            } => write!(f, "{quantity} is {value}, but must be {valid}"),
+            Self::Count {
                 quantity,
                 value,
                 valid,

@@ -1,9 +1,11 @@
 //! Lights, and the Russian roulette that decides how far a light reaches in a frame and with which weight.
 
+mod curve;
 mod roulette;
 mod vpl;
 mod xi;
 
+pub use curve::rank_along_curve;
 pub use roulette::Roulette;
 pub use vpl::Vpl;
 pub use xi::{FrameSeed, Seed, Xi};

@@ -15,7 +15,7 @@ pub fn light(frame: &Frame, lights: &[GlossyLight], share: u32, seed: u32) -> Ve
             let mut indices: Vec<u32> = (0..count)
                 .map(|local| interleave.join_light(subregion, local))
                 .collect();
-            let order = |index: &u32| Seed(seed).frame(share).xi(*index).get();
+            let order = |index: &u32| Seed(seed).frame(share).hashed_xi(*index).get();
             indices.sort_by(|a, b| order(a).total_cmp(&order(b)));
             indices.truncate((count / share).max(1) as usize);
             let weight = count as f32 / indices.len().max(1) as f32;

@@ -52,7 +52,7 @@ pub fn parts(kind: StudyKind, subjects: usize) -> usize {
 /// The setting that is varied one way at a time: as the example `render` has it.
 const ROUGHNESS: f32 = 0.1;
 const F0: f32 = 0.9;
-const DELTA: f32 = 0.001;
+pub const DELTA: f32 = 0.001;
 const INTERLEAVE: u32 = 4;
 
 /// What a figure of frames says of itself.

@@ -1,7 +1,8 @@
 //! The lights of a frame: lit points with their share of the flux and their ξ.
 
 use stochastic_light_culling::{
-    Direction, Error, GgxLobe, Interleave, LambertLobe, Lobe, Schlick, Seed, Vpl, Xi, glam::Vec3,
+    Direction, Error, FrameSeed, GgxLobe, Interleave, LambertLobe, Lobe, Roulette, Schlick, Seed,
+    Vpl, Xi, glam::Vec3, rank_along_curve,
 };
 
 use crate::scene::{LitPoint, LitPoints, Surface};
@@ -33,24 +34,59 @@ pub struct Lights {
 }
 
 impl Lights {
-    /// The lights at `points`, each to light one subregion of `interleave`.
-    pub fn new(points: &LitPoints, interleave: &Interleave, seed: u32) -> Result<Self, Error> {
-        // One row of random numbers for both kinds, so that no two lights share one.
-        let first_diffuse = points.glossy.len() as u32;
-        Ok(Self {
-            glossy: lights(&points.glossy, interleave.weight(), 0, seed)?,
-            diffuse: lights(&points.diffuse, interleave.weight(), first_diffuse, seed)?,
-        })
+    /// The lights at `points`, each to light one subregion of `interleave`. Their order is that of ranks: lights
+    /// side by side shine on places near each other.
+    pub fn new(
+        points: &LitPoints,
+        interleave: &Interleave,
+        roulette: &Roulette,
+        seed: u32,
+    ) -> Result<Self, Error> {
+        let weight = interleave.weight();
+        // At ξ = 1, where each point reflects the same radiance.
+        let xi = Xi::new(1.0)?;
+        let mut glossy = ordered(lights(&points.glossy, weight)?, |vpl| {
+            vpl.bound(roulette, xi).center()
+        })?;
+        let mut diffuse = ordered(lights(&points.diffuse, weight)?, |vpl| {
+            vpl.bound(roulette, xi).center()
+        })?;
+        // Seeds apart, so that no two lights of a subregion share a ξ.
+        redraw(&mut glossy, interleave, Seed(seed), 0);
+        redraw(&mut diffuse, interleave, Seed(!seed), 0);
+        Ok(Self { glossy, diffuse })
     }
 }
 
-fn lights<L: Lobe + Copy>(
-    points: &[LitPoint<L>],
-    weight: f32,
-    first: u32,
-    seed: u32,
+/// Sorts `lights` along a curve through the points that `place` gives them.
+pub fn ordered<L: Copy>(
+    lights: Vec<Light<L>>,
+    place: impl Fn(&Vpl<L>) -> Vec3,
 ) -> Result<Vec<Light<L>>, Error> {
-    let light = |(i, point): (u32, &LitPoint<L>)| {
+    let places: Vec<Vec3> = lights.iter().map(|light| place(&light.vpl)).collect();
+    let (mut ranks, mut scratch) = (vec![0; lights.len()], vec![0; 2 * lights.len()]);
+    rank_along_curve(&places, &mut ranks, &mut scratch)?;
+    let mut sorted = lights.clone();
+    for (light, rank) in lights.into_iter().zip(ranks) {
+        sorted[rank as usize] = light;
+    }
+    Ok(sorted)
+}
+
+/// Gives each light its ξ for a frame, by its rank within its subregion.
+pub fn redraw<L>(lights: &mut [Light<L>], interleave: &Interleave, seed: Seed, frame: u32) {
+    let seeds: Vec<FrameSeed> = (0..interleave.subregions())
+        .map(|subregion| seed.subregion(subregion).frame(frame))
+        .collect();
+    for (i, light) in (0..).zip(lights) {
+        let (subregion, rank) = interleave.split_light(i);
+        light.xi = seeds[subregion as usize].xi_of_rank(rank);
+    }
+}
+
+fn lights<L: Lobe + Copy>(points: &[LitPoint<L>], weight: f32) -> Result<Vec<Light<L>>, Error> {
+    let xi = Xi::new(1.0)?;
+    let light = |point: &LitPoint<L>| {
         let brightest = point.flux.max_element();
         Ok(Light {
             vpl: Vpl::new(point.position, weight * brightest, point.lobe)?,
@@ -60,8 +96,8 @@ fn lights<L: Lobe + Copy>(
             } else {
                 Vec3::ZERO
             },
-            xi: Seed(seed).frame(0).xi(i),
+            xi,
         })
     };
-    (first..).zip(points).map(light).collect()
+    points.iter().map(light).collect()
 }

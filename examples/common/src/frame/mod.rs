@@ -13,7 +13,7 @@ mod tiles;
 
 pub use bounds::{BoundKind, GlossyLight};
 pub use denoise::cross_bilateral;
-pub use lights::{Light, Lights};
+pub use lights::{Light, Lights, ordered, redraw};
 pub use measure::{Measured, Tiling, measure_diffuse, measure_glossy, timed};
 pub use metrics::{mean_over_surfaces, rmse};
 pub use reference::Reference;

@@ -2,8 +2,7 @@
 
 use stochastic_light_culling::Seed;
 
-/// What a number is drawn for. The library's own ξ take the hash's second word to be a frame number;
-/// these come from frames that no picture will reach.
+/// What a number is drawn for. From frames that no picture will reach.
 #[derive(Clone, Copy, Debug)]
 #[repr(u32)]
 pub enum Purpose {
@@ -15,5 +14,5 @@ pub enum Purpose {
 /// A number in (0, 1] for the thing `index`.
 pub fn uniform(index: u32, purpose: Purpose, seed: u32) -> f32 {
     let frame = purpose as u32;
-    Seed(seed).frame(frame).xi(index).get()
+    Seed(seed).frame(frame).hashed_xi(index).get()
 }

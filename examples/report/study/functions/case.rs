@@ -19,7 +19,7 @@ pub struct Case {
 impl Case {
     /// With a roughness from 0.01 to 1, and both directions a degree above the surface or more.
     pub fn new(index: u32) -> Self {
-        let random = |frame| 2.0 * Seed(1).frame(frame).xi(index).get() - 1.0;
+        let random = |frame| 2.0 * Seed(1).frame(frame).hashed_xi(index).get() - 1.0;
         let vector = |first| Vec3::new(random(first), random(first + 1), random(first + 2));
         let direction = |vector| Direction::new(vector).expect("random vectors are not zero");
         let normal = direction(vector(0));

@@ -39,10 +39,10 @@ pub fn bounds(bench: &mut Bench) {
     let seed = Seed(2).frame(0);
     bench.add(
         (kind, "scale r, roulette"),
-        |case| seed.xi(case.index),
+        |case| seed.hashed_xi(case.index),
         |xi| Roulette::new(1e-3).expect("in range").scale(2.0, *xi),
         |case, scale| {
-            let xi = seed.xi(case.index).get();
+            let xi = seed.hashed_xi(case.index).get();
             off(scale, (2.0 / (f64::from(1e-3_f32) * f64::from(xi))).sqrt())
         },
     );
@@ -113,7 +113,7 @@ pub fn tests(bench: &mut Bench) {
     let camera = camera();
     let grid = TileGrid::new([640, 360], 16).expect("not empty");
     let tile = move |case: &Case| {
-        let random = |frame| Seed(3).frame(frame).xi(case.index).get();
+        let random = |frame| Seed(3).frame(frame).hashed_xi(case.index).get();
         let [x, y] = [random(1) * 39.0, random(2) * 21.0];
         let near = 10.0 + 25.0 * random(3);
         (
