@@ -13,7 +13,8 @@
 //! |---|---|---|
 //! | lobe | surface, incoming direction | what it reflects: [`GgxLobe`], [`LambertLobe`] and others |
 //! | light | lobe, position, flux | radiant intensity: [`Vpl`] |
-//! | range | radiant intensity, ξ | range and weight: [`Roulette`], [`Xi`], [`Seed`] |
+//! | ξ | rank of a light, frame | random number: [`Xi`], [`Seed`], [`rank_along_curve`] |
+//! | range | radiant intensity, ξ | range and weight: [`Roulette`] |
 //! | bound | lobe, range | shape that encloses the range: [`Ellipsoid`], [`Spheroid`], [`Sphere`] |
 //! | view | camera, image | tiles and their depths: [`Camera`], [`TileGrid`], [`DepthInterval`] |
 //! | project | bound, camera | unit sphere: [`ProjectedEllipsoid`], [`ProjectedSphere`] |

@@ -127,6 +127,7 @@ fn check_every_study(scene: &str) {
             "functions",
             "interleaving",
             "receivers",
+            "spread",
             "tests",
             "tightness",
             "vpl_count"

@@ -16,12 +16,13 @@ use std::process::ExitCode;
 use common::command::{self, say};
 use common::folder::make_folder;
 use common::frame::{self, Frame, Lights, Measured, Reference, Slicing, Tiles, Tiling, timed};
+use common::picture::{Exposure, tone_mapped, write_png};
 use common::progress::progress;
 use common::scene::{self, LitPoints, Scene, SurfaceBuffer, Tracer};
 use stochastic_light_culling::{Camera, Error, Interleave, TileGrid, glam::Vec3};
 
 use arguments::{Arguments, ReferenceKind};
-use output::{Exposure, Request, Results, Row};
+use output::{Request, Results, Row};
 
 fn main() -> ExitCode {
     command::run(|arguments: Arguments| render(&arguments))
@@ -217,23 +218,19 @@ fn write_pictures(
     let (folder, size) = (&*arguments.out, arguments.size);
     let image = radiance(glossy_image, diffuse_image);
     let exposure = Exposure::of(&image);
-    output::write_png(
-        folder,
-        "indirect.png",
-        &output::tone_mapped(size, &image, exposure),
-    )?;
+    write_png(folder, "indirect.png", &tone_mapped(size, &image, exposure))?;
     for measured in glossy {
         let refined = if measured.refined { "-refined" } else { "" };
         let name = format!("lights-{}{refined}.png", measured.bound.name());
         let map = output::heat_map(size, &measured.shaded.evaluated);
-        output::write_png(folder, &name, &map)?;
+        write_png(folder, &name, &map)?;
     }
     if let Some([glossy, diffuse]) =
         reference.and_then(|reference| reference.images(surfaces.len()))
     {
         let image = radiance(&glossy, &diffuse);
-        let picture = output::tone_mapped(size, &image, exposure);
-        output::write_png(folder, "reference.png", &picture)?;
+        let picture = tone_mapped(size, &image, exposure);
+        write_png(folder, "reference.png", &picture)?;
     }
     Ok(())
 }

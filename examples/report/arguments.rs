@@ -48,6 +48,8 @@ pub enum StudyKind {
     Interleaving,
     /// What it costs to leave the receiver's BRDF out of the probability
     Receivers,
+    /// Error of the mean of 1 to 64 frames, by how the ξ of lights and frames go together
+    Spread,
 }
 
 impl Arguments {

@@ -24,6 +24,7 @@ use std::process::ExitCode;
 
 use common::command;
 use common::folder::make_folder;
+use common::picture::write_png;
 use common::progress::progress;
 use common::scene::Scene;
 
@@ -64,6 +65,9 @@ fn report(arguments: &Arguments) -> Result<(), String> {
         study
             .figure
             .write(&arguments.out.join(format!("{}.svg", study.name)))?;
+        if let Some(picture) = &study.picture {
+            write_png(&arguments.out, &format!("{}.png", study.name), picture)?;
+        }
         page.add(&study);
     }
     page.write(&arguments.out)

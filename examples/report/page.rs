@@ -56,14 +56,19 @@ impl Page {
             caption,
             sheet,
             summary,
+            picture,
             figure,
         } = study;
         let table = summary.as_ref().unwrap_or(sheet).markdown();
         say(format_args!("\n{}: {name}\n\n{table}", figure.title));
         let title = &figure.title;
+        let picture = match picture {
+            Some(_) => format!("![{title}: frames]({name}.png)\n\n"),
+            None => String::new(),
+        };
         let _ = write!(
             self.studies,
-            "\n## {title}\n\n![{title}]({name}.svg)\n\n{caption}\n\n{table}\n\n[{name}.csv]({name}.csv)\n"
+            "\n## {title}\n\n![{title}]({name}.svg)\n\n{picture}{caption}\n\n{table}\n\n[{name}.csv]({name}.csv)\n"
         );
     }
 

@@ -40,9 +40,13 @@ impl<'a> Score<'a> {
 
     /// The root of the mean squared error, over the mean brightness.
     pub fn relative_rmse(&self) -> Mean {
-        Mean::of(&self.squared)
-            .sqrt()
-            .over(self.truth.brightness.mean)
+        self.relative_mse().sqrt()
+    }
+
+    /// The mean squared error, over the squared mean brightness.
+    pub fn relative_mse(&self) -> Mean {
+        let brightness = self.truth.brightness.mean;
+        Mean::of(&self.squared).over(brightness * brightness)
     }
 
     /// By how much frames are too bright in the mean, over the brightness; that the truth is known to a

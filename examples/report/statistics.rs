@@ -20,6 +20,16 @@ impl Mean {
         }
     }
 
+    /// The mean of independent means.
+    pub fn of_means(means: &[Self]) -> Self {
+        let count = means.len().max(1) as f64;
+        let variance: f64 = means.iter().map(|mean| mean.standard_error.powi(2)).sum();
+        Self {
+            mean: means.iter().map(|mean| mean.mean).sum::<f64>() / count,
+            standard_error: variance.sqrt() / count,
+        }
+    }
+
     /// Where the expectation lies in 95 cases of a hundred.
     pub fn interval(self) -> [f64; 2] {
         [-1.96, 1.96].map(|sigmas| self.mean + sigmas * self.standard_error)

@@ -102,6 +102,15 @@ impl<'a> Subject<'a> {
         })
     }
 
+    /// The same scene in a picture of half the width and height.
+    pub fn half_as_large(&self) -> Self {
+        let effort = Effort {
+            size: self.effort.size.map(|n| n / 2),
+            ..self.effort
+        };
+        Self::new(self.name, self.scene, effort, self.seed).expect("it was seen in more pixels")
+    }
+
     /// The seed of a repetition, of which no two studies of one subject share any by chance.
     pub fn seed_of(&self, repetition: u32) -> u32 {
         self.seed.wrapping_mul(0x9e37_79b9).wrapping_add(repetition)
@@ -173,7 +182,11 @@ impl<'a> Subject<'a> {
 
     /// The mean of a frame over roulette alone, shaded with all `lights`.
     pub fn truth_of(&self, frame: &Frame, lights: &[GlossyLight]) -> Truth {
-        let all = fewer::light(frame, lights, 1, 0);
+        self.truth_in(frame, &fewer::light(frame, lights, 1, 0))
+    }
+
+    /// The truth that `all` pixels of a picture show.
+    pub fn truth_in(&self, frame: &Frame, all: &[Vec3]) -> Truth {
         let pixels = Reference::pixels(frame, self.stride());
         let irradiance: Vec<Vec3> = pixels.iter().map(|pixel| all[*pixel]).collect();
         let brightness = self.brightness(&pixels, &irradiance);
@@ -189,6 +202,14 @@ impl<'a> Subject<'a> {
     fn stride(&self) -> usize {
         let pixels = f64::from(self.effort.size[0] * self.effort.size[1]);
         (pixels / 6000.0).sqrt() as usize | 1
+    }
+
+    /// What the pixels show of their `irradiance`.
+    pub fn radiance(&self, irradiance: &[Vec3]) -> Vec<Vec3> {
+        let surfaces = self.surfaces.surfaces.iter().zip(irradiance);
+        surfaces
+            .map(|(surface, irradiance)| surface.reflected(*irradiance))
+            .collect()
     }
 
     /// The mean over `pixels`, and over three channels, of the radiance that `irradiance` makes there.

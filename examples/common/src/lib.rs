@@ -11,5 +11,6 @@
 pub mod command;
 pub mod folder;
 pub mod frame;
+pub mod picture;
 pub mod progress;
 pub mod scene;

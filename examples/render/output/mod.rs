@@ -2,12 +2,10 @@
 
 mod heat_map;
 mod json;
-mod picture;
 mod table;
 
 pub use heat_map::heat_map;
 pub use json::json;
-pub use picture::{Exposure, tone_mapped, write_png};
 pub use table::table;
 
 /// What one bound came to.

@@ -102,6 +102,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
                   the mean of all pixels: what is unbiased stays at zero whatever δ is.",
         sheet,
         summary: Some(summary),
+        picture: None,
         figure: Figure {
             title: "Error against time, as δ falls".into(),
             subtitle: of_frames(

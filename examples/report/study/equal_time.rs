@@ -81,6 +81,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
                   16×16 pixels, the box test) with δ = 0.001. Lower is better; bars are 95 % confidence.",
         sheet,
         summary: None,
+        picture: None,
         figure: Figure {
             title: "Error in equal time".into(),
             subtitle: format!(

@@ -10,7 +10,7 @@ use crate::sheet::Sheet;
 use crate::statistics::median;
 use crate::subject::{Gloss, Subject};
 
-const METHOD: Method = Method::Culled {
+pub const METHOD: Method = Method::Culled {
     bound: BoundKind::Tight,
     refined: true,
 };
@@ -84,6 +84,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
                   the w×w pixels.",
         sheet,
         summary: None,
+        picture: None,
         figure: Figure {
             title: "Interleaving, with and without denoising".into(),
             subtitle: of_frames(

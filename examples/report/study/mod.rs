@@ -5,9 +5,12 @@ mod equal_time;
 mod functions;
 mod interleaving;
 mod receivers;
+mod spread;
 mod tests;
 mod tightness;
 mod vpl_count;
+
+use image::RgbImage;
 
 use crate::arguments::StudyKind;
 use crate::figure::Figure;
@@ -23,6 +26,8 @@ pub struct Study {
     pub sheet: Sheet,
     /// What people read of it, if it is long.
     pub summary: Option<Sheet>,
+    /// Frames to look at.
+    pub picture: Option<RgbImage>,
     pub figure: Figure,
 }
 
@@ -37,6 +42,7 @@ pub fn make(kind: StudyKind, subjects: &[Subject], done: &dyn Fn()) -> Study {
         StudyKind::VplCount => vpl_count::make(subjects, done),
         StudyKind::Interleaving => interleaving::make(subjects, done),
         StudyKind::Receivers => receivers::make(subjects, done),
+        StudyKind::Spread => spread::make(subjects, done),
     }
 }
 
@@ -45,6 +51,7 @@ pub fn parts(kind: StudyKind, subjects: usize) -> usize {
     match kind {
         StudyKind::Functions | StudyKind::Tightness => 1,
         StudyKind::EqualTime => subjects * equal_time::ROUGHNESSES.len(),
+        StudyKind::Spread => subjects * spread::ROUGHNESSES.len(),
         _ => subjects,
     }
 }

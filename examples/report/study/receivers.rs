@@ -86,6 +86,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
                   what the receiver's BRDF is worth, and what the paper's Fig. 12 shows.",
         sheet,
         summary: None,
+        picture: None,
         figure: Figure {
             title: "Glossy receivers: the noise of a probability without their BRDF".into(),
             subtitle: of_frames(subjects, &format!("δ = {DELTA}, glossy lights alone")),

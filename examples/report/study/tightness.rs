@@ -101,6 +101,7 @@ pub fn make(effort: &Effort, done: &dyn Fn()) -> Study {
         caption: "The middle of all lobes of the grid, and bars from the least to the greatest.",
         sheet,
         summary: Some(summary),
+        picture: None,
         figure: Figure {
             title: "How tight the bounds are, against their cost".into(),
             subtitle: format!(

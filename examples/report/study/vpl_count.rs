@@ -98,6 +98,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
                   as many: what grows is the work of culling.",
         sheet,
         summary: None,
+        picture: None,
         figure: Figure {
             title: "Time against the number of lights".into(),
             subtitle: of_any_rays(

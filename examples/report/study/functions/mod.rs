@@ -57,6 +57,7 @@ pub fn make(effort: &Effort, done: &dyn Fn()) -> Study {
                   tiles that it keeps though an exact one in f64 would not. None is lost.",
         sheet,
         summary: None,
+        picture: None,
         figure: Figure {
             title: "Functions: error against time".into(),
             subtitle: format!("{count} random cases, one core, one at a time"),

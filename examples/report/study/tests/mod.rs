@@ -198,6 +198,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
                   to the left is better; pairs that blocks of tiles decide together share the time.",
         sheet,
         summary: None,
+        picture: None,
         figure: Figure {
             title: "False positives in lists, against the time of a test".into(),
             subtitle: of_frames(
