@@ -68,7 +68,7 @@ fn lists_are_buffers_already() {
     assert_eq!(numbers, [3_u32, 5, 9].map(u32::to_ne_bytes).as_flattened());
 }
 
-/// The tile test, as a shader does it with nothing but the bytes of a record.
+/// The paper's box test, as a shader does it with nothing but the bytes of a record.
 fn touches(bytes: &[u8], rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
     let [xx, xy, yx, yy] = [0, 4, 8, 12].map(|offset| number(bytes, offset));
     let z_axis = [16, 20, 24].map(|offset| number(bytes, offset));
@@ -95,7 +95,7 @@ proptest! {
     #![proptest_config(cases(3000))]
 
     #[test]
-    fn a_record_is_all_that_the_tile_test_needs(
+    fn a_record_is_all_that_the_box_test_needs(
         shape in generators::ellipsoid(),
         light in any::<u32>(),
         corner in [-1.0..0.8_f32, -0.6..0.5_f32],
@@ -111,7 +111,7 @@ proptest! {
         let corner = Vec2::from(corner);
         let rectangle = TileRectangle::new(corner, corner + Vec2::from(size)).unwrap();
         let depths = DepthInterval::new(depth, depth * thickness).unwrap();
-        prop_assert_eq!(touches(bytes, &rectangle, &depths), stretch.touches(&rectangle, &depths));
+        prop_assert!(touches(bytes, &rectangle, &depths) || !stretch.touches(&rectangle, &depths));
     }
 
     #[test]

@@ -185,7 +185,7 @@ impl<P: Projected> LightBatch<P> {
             lanes[lane] = *field;
         }
         lights[lane] = light;
-        self.reach[chunk / LANES].widen(chunk % LANES, P::reach_of_fields(&shape));
+        self.reach[chunk / LANES].widen(chunk % LANES, P::bounds_of(&shape).depths);
         self.len += 1;
     }
 

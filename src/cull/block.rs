@@ -11,7 +11,8 @@ use super::lanes::splat_tile;
 use super::tile_depths::{Area, NONE};
 use super::tile_list::{Row, append_list, fill_rows};
 use super::{CullCounters, LightBatch, LightLists, TileDepths};
-use crate::touch::{BoxTest, TileBounds};
+use crate::touch::BoxTest;
+use crate::view::ViewBounds;
 
 /// The memory and the settings of a culler.
 #[derive(Clone, Debug)]
@@ -153,7 +154,7 @@ impl<P: BoxTest> Walk<'_, P> {
                         continue;
                     }
                     let start = self.lists.len();
-                    let tile = TileBounds {
+                    let tile = ViewBounds {
                         across,
                         down,
                         depths: *depths,

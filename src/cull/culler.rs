@@ -142,10 +142,10 @@ impl<P: BoxTest> Culler<P> {
     ///     TileRectangle, glam::{Mat3, Vec2, Vec3},
     /// };
     ///
-    /// // Beside a deep tile far off the axis, but in its bounding box.
+    /// // Beside a deep tile, and turned so that its bounds and the tile's box meet.
     /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.5, 1.0, 0.1..100.0)?;
-    /// let center = Vec3::new(5.5, 0.0, -5.2);
-    /// let ellipsoid = Ellipsoid::new(center, Mat3::IDENTITY, Vec3::new(0.5, 1.0, 0.5))?;
+    /// let center = Vec3::new(4.5, 0.0, -11.0);
+    /// let ellipsoid = Ellipsoid::new(center, Mat3::from_rotation_y(1.0), Vec3::new(2.0, 1.0, 1.0))?;
     /// let mut batch = LightBatch::new();
     /// batch.extend(ellipsoid.project(&camera).map(|stretch| (0, stretch)));
     /// let tile = TileRectangle::new(Vec2::new(0.5, 0.0), Vec2::new(0.6, 0.1))?;

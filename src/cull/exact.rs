@@ -9,7 +9,8 @@ use super::lanes::{LANES, load, parts, splat_tile};
 use super::tile_list::{Row, write_touching};
 use super::{LightBatch, LightLists};
 use crate::num::{F32Lanes, Single};
-use crate::touch::{BoxTest, Frustum, TileBounds};
+use crate::touch::{BoxTest, Frustum};
+use crate::view::ViewBounds;
 
 /// Counts of the tests for one list.
 pub(super) struct Tested {
@@ -27,7 +28,7 @@ pub(super) fn append_list_exactly<S: Simd, P: BoxTest>(
     simd: S,
     lights: &LightBatch<P>,
     rows: &[Row<P>],
-    tile: TileBounds<f32>,
+    tile: ViewBounds<f32>,
     lists: &mut LightLists,
 ) -> Tested {
     simd.vectorize(
@@ -40,7 +41,11 @@ pub(super) fn append_list_exactly<S: Simd, P: BoxTest>(
             };
             let in_lanes = splat_tile(simd, tile);
             let [passed, tested] = write_touching(simd, lights, rows, &in_lanes, places_of, places);
-            let listed = retain_touching(simd, lights.chunks(), tile, places, passed);
+            // Most lists are empty, and need no room for the numbers of lights.
+            let listed = match passed {
+                0 => 0,
+                _ => retain_touching(simd, lights.chunks(), tile, places, passed),
+            };
             lists.advance(listed);
             Tested {
                 lights: tested as u64,
@@ -67,7 +72,7 @@ const FIRST_PLACES: [u32; LANES] = {
 fn retain_touching<S: Simd, P: BoxTest>(
     simd: S,
     chunks: &[Chunk<P>],
-    tile: TileBounds<f32>,
+    tile: ViewBounds<f32>,
     places: &mut [u32],
     count: usize,
 ) -> usize {
@@ -99,7 +104,7 @@ fn touching<S: Simd, P: BoxTest>(
     chunk: &Chunk<P>,
     part: usize,
     wanted: u32,
-    tile: TileBounds<f32>,
+    tile: ViewBounds<f32>,
 ) -> u32 {
     let mut fields = P::fields_of(F32Lanes::new(simd, 0.0).widen());
     for (field, lanes) in fields.as_mut().iter_mut().zip(chunk.fields.as_ref()) {
@@ -121,6 +126,6 @@ fn touching<S: Simd, P: BoxTest>(
 
 /// Whether the light in `lane` of `chunk` touches `tile` by the exact test.
 #[inline(always)]
-fn touches<P: BoxTest>(chunk: &Chunk<P>, lane: usize, tile: TileBounds<f32>) -> bool {
+fn touches<P: BoxTest>(chunk: &Chunk<P>, lane: usize, tile: ViewBounds<f32>) -> bool {
     Frustum::new(P::image(&chunk.fields_of(lane)), tile.widen()).meets_ball()
 }

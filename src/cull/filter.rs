@@ -7,11 +7,12 @@ use super::batch::{Chunk, Reach};
 use super::lanes::{LANES, load, parts, store};
 use crate::num::{F32Lanes, Real};
 use crate::project::Projected;
-use crate::touch::{BoxTest, TileBounds};
+use crate::touch::BoxTest;
+use crate::view::ViewBounds;
 
 /// The bits of those of sixteen chunks that reach depths of `tile`.
 #[inline(always)]
-pub(super) fn in_depth<S: Simd>(simd: S, reach: &Reach, tile: &TileBounds<F32Lanes<S>>) -> u32 {
+pub(super) fn in_depth<S: Simd>(simd: S, reach: &Reach, tile: &ViewBounds<F32Lanes<S>>) -> u32 {
     let mut bits = 0;
     for part in 0..parts::<S>() {
         let near = load(simd, &reach.near, part).le(tile.depths[1]);
@@ -40,12 +41,13 @@ pub(super) fn load_fields<S: Simd, P: Projected>(
 pub(super) fn touching<S: Simd, P: BoxTest>(
     simd: S,
     chunk: &Chunk<P>,
-    tile: &TileBounds<F32Lanes<S>>,
+    tile: &ViewBounds<F32Lanes<S>>,
 ) -> u32 {
     let mut bits = 0;
     for part in 0..parts::<S>() {
         let fields = load_fields(simd, chunk, part);
-        let misses = P::misses(&fields, &P::row(&fields, tile.down), tile);
+        let apart = P::bounds_of(&fields).are_apart(tile);
+        let misses = apart | P::misses(&fields, &P::row(&fields, tile.down), tile);
         bits |= ((!misses).to_bitmask() as u32) << (part * S::f32s::LEN);
     }
     bits
@@ -57,7 +59,7 @@ pub(super) fn touching<S: Simd, P: BoxTest>(
 pub(super) fn filter<S: Simd, P: BoxTest>(
     simd: S,
     lights: &LightBatch<P>,
-    tile: &TileBounds<F32Lanes<S>>,
+    tile: &ViewBounds<F32Lanes<S>>,
     kept: &mut LightBatch<P>,
 ) -> u64 {
     let (to, to_reach) = kept.make_room_for(lights);

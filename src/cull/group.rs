@@ -16,7 +16,7 @@ use crate::bound::{BoundStrategy, MAX_QUADS, Quads, Shape, ShapeLanes};
 use crate::light::{Roulette, Vpl, Xi};
 use crate::lobe::Lobe;
 use crate::num::{F32Lanes, Quad, Real, Single, Vector3, load_quads};
-use crate::project::{Project, Projected, ProjectedLanes};
+use crate::project::{Project, Projected};
 use crate::view::Camera;
 
 /// A kind of input that a batch is built from.
@@ -272,7 +272,7 @@ impl<I: BatchInput> Group<I> {
             let unit = self.input.unit_bounds(&quads, &self.per_light[lanes]);
             let reaches = !unit.is_empty() & scale.is_positive();
             let placed = unit.placed(Vector3::new(x, y, z), scale);
-            let ProjectedLanes { fields, reach } = I::Shape::project_lanes(placed, &frame.camera);
+            let fields = I::Shape::project_lanes(placed, &frame.camera);
             let chunk_fields = projected.chunk.fields.as_mut().iter_mut();
             for (lanes, vector) in chunk_fields.zip(fields.as_ref()) {
                 store(lanes, part, *vector);
@@ -280,7 +280,7 @@ impl<I: BatchInput> Group<I> {
 
             let wanted = (wanted >> first) & ((1 << S::f32s::LEN) - 1);
             let non_empty = reaches & S::mask32s::from_bitmask(simd, wanted);
-            let [near, far] = reach;
+            let [near, far] = <I::Shape as Project>::Projected::bounds_of(&fields).depths;
             nearest = F32Lanes::select(non_empty, nearest.min(near), nearest);
             farthest = F32Lanes::select(non_empty, farthest.max(far), farthest);
             projected.non_empty |= (non_empty.to_bitmask() as u32) << (part * S::f32s::LEN);

@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, SimdBase};
 
 use crate::num::{F32Lanes, MAX_LANES};
-use crate::touch::TileBounds;
+use crate::view::ViewBounds;
 
 /// The number of lights in a chunk: the lanes of the widest vectors.
 pub(super) const LANES: usize = MAX_LANES;
@@ -34,9 +34,9 @@ pub(super) fn store<S: Simd>(lanes: &mut Lanes, part: usize, vector: F32Lanes<S>
 
 /// The same tile in each lane.
 #[inline(always)]
-pub(super) fn splat_tile<S: Simd>(simd: S, tile: TileBounds<f32>) -> TileBounds<F32Lanes<S>> {
+pub(super) fn splat_tile<S: Simd>(simd: S, tile: ViewBounds<f32>) -> ViewBounds<F32Lanes<S>> {
     let splat = |[min, max]: [f32; 2]| [F32Lanes::new(simd, min), F32Lanes::new(simd, max)];
-    TileBounds {
+    ViewBounds {
         across: splat(tile.across),
         down: splat(tile.down),
         depths: splat(tile.depths),

@@ -1,7 +1,7 @@
 use alloc::vec::Vec;
 
 use crate::base::Error;
-use crate::touch::TileBounds;
+use crate::view::ViewBounds;
 use crate::view::{Camera, DepthInterval, TileGrid, TileRectangle};
 
 /// A grid of tiles, and for each tile one or more depth intervals that hold its surfaces.
@@ -246,7 +246,7 @@ impl TileDepths {
     }
 
     /// The bounds that hold those of all tiles of `area`. `None` if no tile has depths.
-    pub(super) fn bounds_of(&self, area: Area) -> Option<TileBounds<f32>> {
+    pub(super) fn bounds_of(&self, area: Area) -> Option<ViewBounds<f32>> {
         let [columns, rows] = [0, 1].map(|i| area.min[i]..area.max[i]);
         let mut depths = NONE;
         for y in rows.clone() {
@@ -256,7 +256,7 @@ impl TileDepths {
         }
         let across = self.columns[columns].iter().copied();
         let down = self.rows[rows].iter().copied();
-        (depths != NONE).then(|| TileBounds {
+        (depths != NONE).then(|| ViewBounds {
             across: across.fold(NONE, hull_of),
             down: down.fold(NONE, hull_of),
             depths,

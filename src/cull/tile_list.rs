@@ -7,7 +7,8 @@ use super::filter::{in_depth, load_fields};
 use super::lanes::{LANES, Lanes, load, parts, store};
 use super::{LightBatch, LightLists};
 use crate::num::F32Lanes;
-use crate::touch::{BoxTest, TileBounds};
+use crate::touch::BoxTest;
+use crate::view::ViewBounds;
 
 /// For the lights of a chunk, the intermediate results of the box test that all tiles of a row share.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +47,7 @@ pub(super) fn append_list<S: Simd, P: BoxTest>(
     simd: S,
     lights: &LightBatch<P>,
     rows: &[Row<P>],
-    tile: &TileBounds<F32Lanes<S>>,
+    tile: &ViewBounds<F32Lanes<S>>,
     lists: &mut LightLists,
 ) -> u64 {
     let room = lists.room_for(lights.room_for_a_list());
@@ -69,7 +70,7 @@ pub(super) fn write_touching<S: Simd, P: BoxTest>(
     simd: S,
     lights: &LightBatch<P>,
     rows: &[Row<P>],
-    tile: &TileBounds<F32Lanes<S>>,
+    tile: &ViewBounds<F32Lanes<S>>,
     values: impl Fn(usize, &Chunk<P>, usize) -> S::u32s,
     out: &mut [u32],
 ) -> [usize; 2] {
@@ -89,7 +90,8 @@ pub(super) fn write_touching<S: Simd, P: BoxTest>(
                     *vector = load(simd, lanes, part);
                 }
                 let fields = load_fields(simd, chunk, part);
-                let touching = !P::misses(&fields, &shared, tile);
+                let apart = P::bounds_of(&fields).are_apart(tile);
+                let touching = !(apart | P::misses(&fields, &shared, tile));
                 let numbers = values(first + index, chunk, part);
                 end += write_chosen::<S>(numbers, touching, &mut out[end..end + S::u32s::LEN]);
             }

@@ -18,8 +18,10 @@ use crate::project::{ProjectedEllipsoid, ProjectedSphere};
 /// }
 /// ```
 ///
-/// The elements of M that are not listed are zero. The record holds all that the
-/// [tile test](crate::ProjectedEllipsoid::touches) needs: products, sums, minima and maxima.
+/// The elements of M that are not listed are zero. The record holds all that the box test of the paper needs:
+/// products, sums, minima and maxima. That test touches whatever [`touches`](crate::ProjectedEllipsoid::touches)
+/// does, and other tiles too. With its depths cut to those of the ellipsoid, (Mc′_z ± 1)/m widened by some
+/// roundings, it touches fewer.
 ///
 /// A shader that does the same operations may decide differently where a tile and a light just touch or just
 /// miss, since shading languages allow compilers to contract and reorder operations and to flush subnormal

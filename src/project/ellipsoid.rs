@@ -38,11 +38,12 @@
 
 use glam::{Mat3, Vec3};
 
-use super::projected::{Field, Projected, ProjectedLanes, outward};
+use super::projected::{Field, Projected, outward};
+use super::slopes::{TangentPlanes, unbounded};
 use super::{Project, margin};
 use crate::bound::{Ellipsoid, Ellipsoids};
 use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3};
-use crate::view::Camera;
+use crate::view::{Camera, ViewBounds};
 
 /// Budget for c′ and M c′, in units of the sum of the coordinates of c′.
 const CENTER_ROUNDINGS: f32 = 6.0;
@@ -55,8 +56,6 @@ const AXES_ROUNDINGS: f32 = 128.0;
 const AXES_DEVIATIONS: f32 = 6.0;
 /// Budget for the enlarged shortest semi-axis, the row of m and the comparison of the box test.
 const SEMI_AXIS_ROUNDINGS: u16 = 4;
-/// Budget for the product and the difference of the box test in m z, in units of the unit sphere.
-const REACH_ROUNDINGS: f32 = 4.0;
 /// Lower clamp of the enlarged shortest semi-axis. Its reciprocal times a slope and a depth is finite.
 const LEAST_SEMI_AXIS: f32 = 1e-30;
 
@@ -123,7 +122,11 @@ pub fn stretch_rotation(stretch: Mat3) -> Mat3 {
 pub struct ProjectedEllipsoid {
     matrix: Mat3,
     center: Vec3,
+    bounds: ViewBounds<f32>,
 }
+
+/// The number of fields of a projected ellipsoid.
+const FIELDS: usize = 16;
 
 impl ProjectedEllipsoid {
     /// M. Its columns are the images of the axes of camera space. Its third row is (0, 0, m), and M₁₂ or
@@ -161,35 +164,27 @@ impl Project for Ellipsoid {
     }
 
     #[inline(always)]
-    fn project_lanes<N: Single>(
-        lanes: Ellipsoids<N>,
-        camera: &Camera,
-    ) -> ProjectedLanes<N, ProjectedEllipsoid> {
-        lanes.projected(camera)
+    fn project_lanes<N: Single>(lanes: Ellipsoids<N>, camera: &Camera) -> [N; FIELDS] {
+        lanes.fields(camera)
     }
 }
 
 impl<N: Single> Ellipsoids<N> {
-    /// [`Project::project_lanes`] of ellipsoids.
-    #[inline(always)]
-    pub(super) fn projected(self, camera: &Camera) -> ProjectedLanes<N, ProjectedEllipsoid> {
-        let fields = self.fields(camera);
-        ProjectedLanes {
-            reach: ProjectedEllipsoid::reach_of_fields(&fields),
-            fields,
-        }
-    }
-
     /// The fields of the projected ellipsoids, none of which is empty.
     #[inline(always)]
-    fn fields(self, camera: &Camera) -> [N; 10] {
+    pub(super) fn fields(self, camera: &Camera) -> [N; FIELDS] {
         let semi_axes = self.semi_axes;
         let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
         let center = camera.sum_to_camera_space(self.parts);
         let is_finite = semi_axes.is_finite() & center.is_finite();
         let zero = shortest.zero();
+        let [low, high] = unbounded(zero);
+        let everywhere = [
+            zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, low, high, low, high, low,
+            high,
+        ];
         if N::is_known_false(is_finite) {
-            return [zero; 10];
+            return everywhere;
         }
 
         let axes = camera.rotation_in_lanes(shortest) * self.axes;
@@ -205,8 +200,39 @@ impl<N: Single> Ellipsoids<N> {
         let y = Vector3::new(yx, yy, yz) * factor;
         let z = Vector3::new(factor * 0.0, factor * 0.0, m * factor);
         let c = Vector3::new(x.dot(center), y.dot(center), z.dot(center));
-        let fields = [x.x, x.y, x.z, y.x, y.y, y.z, z.z, c.x, c.y, c.z];
-        N::select_all(is_finite, fields, [zero; 10])
+        let matrix = [x.x, x.y, x.z, y.x, y.y, y.z, z.z];
+        let ViewBounds {
+            across,
+            down,
+            depths,
+        } = bounds(matrix, c);
+        let [xx, xy, xz, yx, yy, yz, zz] = matrix;
+        let [left, right] = across;
+        let [bottom, top] = down;
+        let [near, far] = depths;
+        let fields = [
+            xx, xy, xz, yx, yy, yz, zz, c.x, c.y, c.z, left, right, bottom, top, near, far,
+        ];
+        N::select_all(is_finite, fields, everywhere)
+    }
+}
+
+/// Bounds of the slopes and depths of the points that M, given row by row without the two zeros of its last
+/// row, takes into the unit ball around `center`.
+#[inline(always)]
+fn bounds<N: Single>([xx, xy, xz, yx, yy, yz, m]: [N; 7], center: Vector3<N>) -> ViewBounds<N> {
+    let one = m.splat(1.0);
+    let planes = TangentPlanes::new(center.z, one);
+    // The first two rows of m M⁻¹ are (g_x, h_x, K_x) and (h_y, g_y, K_y). M₁₂ or M₂₁ is zero.
+    let (per_xx, per_yy) = (xx.recip(), yy.recip());
+    let (g_x, g_y) = (m * per_xx, m * per_yy);
+    let (h_x, h_y) = (-(g_y * (xy * per_xx)), -(g_x * (yx * per_yy)));
+    let axis_x = [xy * (yz * per_yy) * per_xx, -(xz * per_xx)];
+    let axis_y = [yx * (xz * per_xx) * per_yy, -(yz * per_yy)];
+    ViewBounds {
+        across: planes.slopes_of_ellipsoid(axis_x, [g_x, h_x], [center.x, center.y]),
+        down: planes.slopes_of_ellipsoid(axis_y, [g_y, h_y], [center.y, center.x]),
+        depths: outward([(center.z - one) / m, (center.z + one) / m]),
     }
 }
 
@@ -247,25 +273,36 @@ fn triangular_stretch<N: Real>(axes: Matrix3<N>, semi_axes: Vector3<N>) -> [N; 7
 }
 
 impl Projected for ProjectedEllipsoid {
-    /// M₁₁, M₁₂, M₁₃, M₂₁, M₂₂, M₂₃, m, and Mc′.
-    type Fields<T: Field> = [T; 10];
+    /// M₁₁, M₁₂, M₁₃, M₂₁, M₂₂, M₂₃, m, Mc′, and the bounds of x/z, of y/z and of z.
+    type Fields<T: Field> = [T; FIELDS];
 
-    /// The centre is at infinity.
-    const NOWHERE: [f32; 10] = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f32::INFINITY, 0.0, 0.0];
+    /// The bounds hold nothing.
+    const NOWHERE: [f32; FIELDS] = {
+        const FAR: f32 = f32::INFINITY;
+        [
+            0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, FAR, -FAR, FAR, -FAR, FAR, -FAR,
+        ]
+    };
 
-    fn fields_of<T: Field>(value: T) -> [T; 10] {
-        [value; 10]
+    fn fields_of<T: Field>(value: T) -> [T; FIELDS] {
+        [value; FIELDS]
     }
 
     #[inline(always)]
-    fn to_fields(&self) -> [f32; 10] {
+    fn to_fields(&self) -> [f32; FIELDS] {
         let (m, c) = (&self.matrix, self.center);
         let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
-        [x.x, y.x, z.x, x.y, y.y, z.y, z.z, c.x, c.y, c.z]
+        let [left, right] = self.bounds.across;
+        let [bottom, top] = self.bounds.down;
+        let [near, far] = self.bounds.depths;
+        [
+            x.x, y.x, z.x, x.y, y.y, z.y, z.z, c.x, c.y, c.z, left, right, bottom, top, near, far,
+        ]
     }
 
     #[inline(always)]
-    fn from_fields([m_11, m_12, m_13, m_21, m_22, m_23, m, x, y, z]: [f32; 10]) -> Self {
+    fn from_fields(fields: [f32; FIELDS]) -> Self {
+        let [m_11, m_12, m_13, m_21, m_22, m_23, m, x, y, z, ..] = fields;
         let matrix = Mat3::from_cols(
             Vec3::new(m_11, m_21, 0.0),
             Vec3::new(m_12, m_22, 0.0),
@@ -274,16 +311,17 @@ impl Projected for ProjectedEllipsoid {
         Self {
             matrix,
             center: Vec3::new(x, y, z),
+            bounds: Self::bounds_of(&fields),
         }
     }
 
     #[inline(always)]
-    fn reach_of_fields<N: Single>(fields: &[N; 10]) -> [N; 2] {
-        let [.., m, _, _, depth] = *fields;
-        outward([(depth - UNIT_REACH) / m, (depth + UNIT_REACH) / m])
+    fn bounds_of<N: Single>(fields: &[N; FIELDS]) -> ViewBounds<N> {
+        let [.., left, right, bottom, top, near, far] = *fields;
+        ViewBounds {
+            across: [left, right],
+            down: [bottom, top],
+            depths: [near, far],
+        }
     }
 }
-
-/// The reach of the unit sphere in m z, enlarged for rounding. [`outward`] pays for the part of the rounding
-/// that grows with the depth.
-const UNIT_REACH: f32 = 1.0 + REACH_ROUNDINGS * UNIT_ROUNDOFF;

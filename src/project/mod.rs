@@ -5,6 +5,7 @@
 mod ellipsoid;
 mod half_space;
 mod projected;
+mod slopes;
 mod sphere;
 mod spheroid;
 
@@ -12,8 +13,6 @@ pub use ellipsoid::{ProjectedEllipsoid, stretch_matrix, stretch_rotation};
 pub use half_space::ProjectedHalfSpace;
 pub(crate) use projected::Field;
 pub use projected::Projected;
-#[cfg(feature = "cull")]
-pub(crate) use projected::ProjectedLanes;
 pub use sphere::ProjectedSphere;
 
 use crate::bound::{Bounded, Shape};
@@ -35,7 +34,7 @@ pub trait Project: Shape {
     fn project_lanes<N: Single>(
         lanes: Self::Lanes<N>,
         camera: &Camera,
-    ) -> projected::ProjectedLanes<N, Self::Projected>;
+    ) -> <Self::Projected as Projected>::Fields<N>;
 }
 
 /// The projected shape of the recommended bound of lobes of type `L`, as batches of such lights hold it.

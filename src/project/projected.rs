@@ -1,6 +1,8 @@
 use core::fmt::Debug;
 
+use super::slopes::unbounded;
 use crate::num::{Single, UNIT_ROUNDOFF};
+use crate::view::ViewBounds;
 
 /// Budget for both ends of a range of depths, in [`outward`].
 const OUTWARD_ROUNDINGS: f32 = 8.0;
@@ -26,9 +28,9 @@ pub trait Projected: Copy + Debug {
     #[doc(hidden)]
     fn from_fields(fields: Self::Fields<f32>) -> Self;
 
-    /// Bounds of the near and far depths of the tiles that the shape touches.
+    /// Bounds of the slopes and depths of the shape, which are among its fields.
     #[doc(hidden)]
-    fn reach_of_fields<N: Single>(fields: &Self::Fields<N>) -> [N; 2];
+    fn bounds_of<N: Single>(fields: &Self::Fields<N>) -> ViewBounds<N>;
 }
 
 /// The type of a field: a number, an array of numbers, or a vector of lanes.
@@ -36,21 +38,10 @@ pub trait Field: Copy + Debug + Send + Sync {}
 
 impl<T: Copy + Debug + Send + Sync> Field for T {}
 
-/// A projected shape in each lane, and the range of depths that it reaches.
-#[derive(Clone, Copy)]
-pub struct ProjectedLanes<N: Single, P: Projected> {
-    pub fields: P::Fields<N>,
-    pub reach: [N; 2],
-}
-
 /// The range from `near` to `far`, widened by [`OUTWARD_ROUNDINGS`]. All depths if an end is NaN.
 #[inline(always)]
 pub(super) fn outward<N: Single>([near, far]: [N; 2]) -> [N; 2] {
     const SHARE: f32 = OUTWARD_ROUNDINGS * UNIT_ROUNDOFF;
     let (near, far) = (near - near.abs() * SHARE, far + far.abs() * SHARE);
-    N::select_all(
-        near.le(far),
-        [near, far],
-        [near.splat(f32::NEG_INFINITY), near.splat(f32::INFINITY)],
-    )
+    N::select_all(near.le(far), [near, far], unbounded(near))
 }

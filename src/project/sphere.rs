@@ -1,10 +1,11 @@
 use glam::Vec3;
 
-use super::projected::{Field, Projected, ProjectedLanes, outward};
+use super::projected::{Field, Projected, outward};
+use super::slopes::{TangentPlanes, unbounded};
 use super::{Project, margin};
 use crate::bound::{Sphere, Spheres};
-use crate::num::Single;
-use crate::view::Camera;
+use crate::num::{Single, Vector3};
+use crate::view::{Camera, ViewBounds};
 
 /// Budget for the centre, in units of the sum of its coordinates.
 const CENTER_ROUNDINGS: f32 = 9.0;
@@ -14,8 +15,6 @@ const BOX_ROUNDINGS: f32 = 2.0;
 const RADIUS_DEVIATIONS: f32 = 3.0;
 /// Budget for the radius: its own sums, those of the box test, and a measured δ that is short.
 const RADIUS_ROUNDINGS: u16 = 10;
-/// Budget for the radius in the range of depths that a sphere reaches.
-const REACH_ROUNDINGS: u16 = 4;
 /// Lower clamp of the radius. Its square, and the squares of distances as long, are normal numbers.
 const LEAST_RADIUS: f32 = 1e-18;
 
@@ -35,7 +34,11 @@ const LEAST_RADIUS: f32 = 1e-18;
 pub struct ProjectedSphere {
     center: Vec3,
     radius_squared: f32,
+    bounds: ViewBounds<f32>,
 }
+
+/// The number of fields of a projected sphere.
+const FIELDS: usize = 10;
 
 impl ProjectedSphere {
     /// The centre in camera space. Zero for a sphere too large to be finite.
@@ -60,8 +63,7 @@ impl Sphere {
         if self.is_empty() {
             return None;
         }
-        let (fields, _) = self.lanes().fields_and_radius(camera);
-        Some(ProjectedSphere::from_fields(fields))
+        Some(ProjectedSphere::from_fields(self.lanes().fields(camera)))
     }
 }
 
@@ -73,22 +75,15 @@ impl Project for Sphere {
     }
 
     #[inline(always)]
-    fn project_lanes<N: Single>(
-        lanes: Spheres<N>,
-        camera: &Camera,
-    ) -> ProjectedLanes<N, ProjectedSphere> {
-        let (fields, radius) = lanes.fields_and_radius(camera);
-        ProjectedLanes {
-            reach: reach_of(fields[2], radius),
-            fields,
-        }
+    fn project_lanes<N: Single>(lanes: Spheres<N>, camera: &Camera) -> [N; FIELDS] {
+        lanes.fields(camera)
     }
 }
 
 impl<N: Single> Spheres<N> {
-    /// The fields of the projected spheres, none of which is empty, and their radii.
+    /// The fields of the projected spheres, none of which is empty.
     #[inline(always)]
-    fn fields_and_radius(self, camera: &Camera) -> ([N; 4], N) {
+    fn fields(self, camera: &Camera) -> [N; FIELDS] {
         let center = camera.relative_to_anchor(self.center);
         let rounding = margin(camera, center, self.radius, CENTER_ROUNDINGS, BOX_ROUNDINGS)
             + camera.rounding_of_anchor();
@@ -96,55 +91,83 @@ impl<N: Single> Spheres<N> {
         let enlarged = (self.radius + rounding + stretch).round_up(RADIUS_ROUNDINGS);
         // If the centre is not finite, the margin is not either.
         let is_finite = (enlarged * enlarged).is_finite();
-        let (zero, infinite) = (enlarged.zero(), enlarged.splat(f32::INFINITY));
+        let zero = enlarged.zero();
+        let [low, high] = unbounded(zero);
+        let everywhere = [zero, zero, zero, high, low, high, low, high, low, high];
         if N::is_known_false(is_finite) {
-            return ([zero, zero, zero, infinite], infinite);
+            return everywhere;
         }
         let radius = enlarged.max(zero.splat(LEAST_RADIUS));
-        let [x, y, z, squared, radius] = N::select_all(
-            is_finite,
-            [center.x, center.y, center.z, radius * radius, radius],
-            [zero, zero, zero, infinite, infinite],
-        );
-        ([x, y, z, squared], radius)
+        let bounds = bounds(center, radius);
+        let ([left, right], [bottom, top]) = (bounds.across, bounds.down);
+        let ([near, far], Vector3 { x, y, z }) = (bounds.depths, center);
+        let squared = radius * radius;
+        let fields = [x, y, z, squared, left, right, bottom, top, near, far];
+        N::select_all(is_finite, fields, everywhere)
     }
 }
 
-/// The range of depths that spheres reach.
+/// Bounds of the slopes and depths of spheres.
 #[inline(always)]
-fn reach_of<N: Single>(depth: N, radius: N) -> [N; 2] {
-    let radius = radius.round_up(REACH_ROUNDINGS);
-    outward([depth - radius, depth + radius])
+fn bounds<N: Single>(center: Vector3<N>, radius: N) -> ViewBounds<N> {
+    let planes = TangentPlanes::new(center.z, radius);
+    ViewBounds {
+        across: planes.slopes_of_sphere(center.x, radius),
+        down: planes.slopes_of_sphere(center.y, radius),
+        depths: outward([center.z - radius, center.z + radius]),
+    }
 }
 
 impl Projected for ProjectedSphere {
-    /// The centre and the square of the radius.
-    type Fields<T: Field> = [T; 4];
+    /// The centre, the square of the radius, and the bounds of x/z, of y/z and of z.
+    type Fields<T: Field> = [T; FIELDS];
 
-    /// The squared radius is less than any squared distance.
-    const NOWHERE: [f32; 4] = [0.0, 0.0, 0.0, -1.0];
+    /// The bounds hold nothing.
+    const NOWHERE: [f32; FIELDS] = {
+        const FAR: f32 = f32::INFINITY;
+        [0.0, 0.0, 0.0, 0.0, FAR, -FAR, FAR, -FAR, FAR, -FAR]
+    };
 
-    fn fields_of<T: Field>(value: T) -> [T; 4] {
-        [value; 4]
+    fn fields_of<T: Field>(value: T) -> [T; FIELDS] {
+        [value; FIELDS]
     }
 
     #[inline(always)]
-    fn to_fields(&self) -> [f32; 4] {
-        let c = self.center;
-        [c.x, c.y, c.z, self.radius_squared]
+    fn to_fields(&self) -> [f32; FIELDS] {
+        let Vec3 { x, y, z } = self.center;
+        let ([left, right], [bottom, top]) = (self.bounds.across, self.bounds.down);
+        let [near, far] = self.bounds.depths;
+        [
+            x,
+            y,
+            z,
+            self.radius_squared,
+            left,
+            right,
+            bottom,
+            top,
+            near,
+            far,
+        ]
     }
 
     #[inline(always)]
-    fn from_fields([x, y, z, radius_squared]: [f32; 4]) -> Self {
+    fn from_fields(fields: [f32; FIELDS]) -> Self {
+        let [x, y, z, radius_squared, ..] = fields;
         Self {
             center: Vec3::new(x, y, z),
             radius_squared,
+            bounds: Self::bounds_of(&fields),
         }
     }
 
     #[inline(always)]
-    fn reach_of_fields<N: Single>(fields: &[N; 4]) -> [N; 2] {
-        let [_, _, depth, radius_squared] = *fields;
-        reach_of(depth, radius_squared.sqrt())
+    fn bounds_of<N: Single>(fields: &[N; FIELDS]) -> ViewBounds<N> {
+        let [_, _, _, _, left, right, bottom, top, near, far] = *fields;
+        ViewBounds {
+            across: [left, right],
+            down: [bottom, top],
+            depths: [near, far],
+        }
     }
 }

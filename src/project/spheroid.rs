@@ -1,5 +1,4 @@
-use super::projected::ProjectedLanes;
-use super::{Project, ProjectedEllipsoid};
+use super::{Project, Projected, ProjectedEllipsoid};
 use crate::bound::{Ellipsoid, Spheroid, Spheroids};
 use crate::num::Single;
 use crate::view::Camera;
@@ -23,7 +22,7 @@ impl Project for Spheroid {
     fn project_lanes<N: Single>(
         lanes: Spheroids<N>,
         camera: &Camera,
-    ) -> ProjectedLanes<N, ProjectedEllipsoid> {
-        lanes.ellipsoids().projected(camera)
+    ) -> <ProjectedEllipsoid as Projected>::Fields<N> {
+        lanes.ellipsoids().fields(camera)
     }
 }

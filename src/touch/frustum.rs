@@ -31,8 +31,8 @@
 //! The first step is generic over [`Double`], so that a culler decides many lights at once. For a light that
 //! stays undecided, the search goes on in `f64`.
 
-use super::box_test::TileBounds;
 use crate::num::Double;
+use crate::view::ViewBounds;
 
 /// Budget for the root of a squared radius, in units of `f64::EPSILON`.
 const RADIUS_ROUNDINGS: f64 = 4.0;
@@ -97,7 +97,7 @@ pub(crate) struct Verdict<N: Double> {
 impl<N: Double> Frustum<N> {
     /// The image of `tile` under the map of `light`, and the ball of `light`.
     #[inline(always)]
-    pub fn new(light: Image<N>, tile: TileBounds<N>) -> Self {
+    pub fn new(light: Image<N>, tile: ViewBounds<N>) -> Self {
         let [near, far] = tile.depths;
         let per_m = near.splat(1.0) / light.d[2];
         let (depth, reach) = (light.center[2] * per_m, light.radius * per_m);

@@ -4,11 +4,10 @@ mod box_test;
 mod frustum;
 
 pub use box_test::BoxTest;
-pub(crate) use box_test::TileBounds;
 pub(crate) use frustum::Frustum;
 
 use crate::project::{ProjectedEllipsoid, ProjectedHalfSpace, ProjectedSphere};
-use crate::view::{DepthInterval, TileRectangle};
+use crate::view::{DepthInterval, TileRectangle, ViewBounds};
 
 /// Tests whether a projected bound touches a tile.
 ///
@@ -33,18 +32,19 @@ pub trait TileTest {
 }
 
 impl ProjectedEllipsoid {
-    /// The box test: the unit sphere against the bounding box of the tile's image
-    /// [Tokuyoshi & Harada 2017, Sec. 5.2].
+    /// The bounds of the ellipsoid against the tile, then the box test: the unit sphere against the bounding
+    /// box of the tile's image at the depths that both have [Tokuyoshi & Harada 2017, Sec. 5.2].
     ///
     /// Always true if the ellipsoid holds a point whose slopes lie in `rectangle` and whose depth lies in
     /// `depths`. True for some tiles without such a point.
     #[inline]
     #[must_use]
     pub fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
-        touches_box(self, &TileBounds::new(rectangle, depths))
+        touches_box(self, &ViewBounds::of_tile(rectangle, depths))
     }
 
-    /// The exact test: the box test, then the unit sphere against the tile's image itself, a frustum.
+    /// The exact test: [`touches`](Self::touches), then the unit sphere against the tile's image itself, a
+    /// frustum.
     ///
     /// Always true if the ellipsoid holds a point of the tile. Takes several times as long as
     /// [`touches`](Self::touches). Worth it if the work for each light of a list takes longer than that.
@@ -54,10 +54,10 @@ impl ProjectedEllipsoid {
     ///     Camera, DepthInterval, Ellipsoid, TileRectangle, glam::{Mat3, Vec2, Vec3},
     /// };
     ///
-    /// // Beside a deep tile far off the axis, but in its bounding box.
+    /// // Beside a deep tile, and turned so that its bounds and the tile's box meet.
     /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.5, 1.0, 0.1..100.0)?;
-    /// let center = Vec3::new(5.5, 0.0, -5.2);
-    /// let ellipsoid = Ellipsoid::new(center, Mat3::IDENTITY, Vec3::new(0.5, 1.0, 0.5))?;
+    /// let center = Vec3::new(4.5, 0.0, -11.0);
+    /// let ellipsoid = Ellipsoid::new(center, Mat3::from_rotation_y(1.0), Vec3::new(2.0, 1.0, 1.0))?;
     /// let light = ellipsoid.project(&camera).expect("not empty");
     /// let tile = TileRectangle::new(Vec2::new(0.5, 0.0), Vec2::new(0.6, 0.1))?;
     /// let depths = DepthInterval::new(5.0, 10.0)?;
@@ -68,30 +68,31 @@ impl ProjectedEllipsoid {
     #[inline]
     #[must_use]
     pub fn touches_exactly(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
-        let tile = TileBounds::new(rectangle, depths);
+        let tile = ViewBounds::of_tile(rectangle, depths);
         touches_box(self, &tile) && touches_frustum(self, &tile)
     }
 }
 
 impl ProjectedSphere {
-    /// The box test: the sphere against the bounding box of the tile in camera space.
+    /// The bounds of the sphere against the tile, then the box test: the sphere against the bounding box of
+    /// the tile, at the depths that both have, in camera space.
     ///
     /// Always true if the sphere holds a point whose slopes lie in `rectangle` and whose depth lies in
     /// `depths`. True for some tiles without such a point.
     #[inline]
     #[must_use]
     pub fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
-        touches_box(self, &TileBounds::new(rectangle, depths))
+        touches_box(self, &ViewBounds::of_tile(rectangle, depths))
     }
 
-    /// The exact test: the box test, then the sphere against the tile itself.
+    /// The exact test: [`touches`](Self::touches), then the sphere against the tile itself.
     ///
     /// Always true if the sphere holds a point of the tile. Takes several times as long as
     /// [`touches`](Self::touches).
     #[inline]
     #[must_use]
     pub fn touches_exactly(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
-        let tile = TileBounds::new(rectangle, depths);
+        let tile = ViewBounds::of_tile(rectangle, depths);
         touches_box(self, &tile) && touches_frustum(self, &tile)
     }
 }
@@ -117,16 +118,17 @@ impl ProjectedHalfSpace {
     }
 }
 
-/// The box test of one shape.
+/// The test by bounds and box of one shape.
 #[inline(always)]
-fn touches_box<P: BoxTest>(shape: &P, tile: &TileBounds<f32>) -> bool {
+fn touches_box<P: BoxTest>(shape: &P, tile: &ViewBounds<f32>) -> bool {
     let fields = shape.to_fields();
-    !P::misses(&fields, &P::row(&fields, tile.down), tile)
+    let bounds = P::bounds_of(&fields);
+    !bounds.are_apart(tile) && !P::misses(&fields, &P::row(&fields, tile.down), tile)
 }
 
 /// The exact test of one shape, after the box test.
 #[inline(always)]
-fn touches_frustum<P: BoxTest>(shape: &P, tile: &TileBounds<f32>) -> bool {
+fn touches_frustum<P: BoxTest>(shape: &P, tile: &ViewBounds<f32>) -> bool {
     let fields = shape.to_fields();
     let mut image = P::fields_of(0.0_f64);
     for (double, single) in image.as_mut().iter_mut().zip(fields.as_ref()) {

@@ -1,11 +1,13 @@
 //! The camera, the tiles of its image, and the depths in them.
 
+mod bounds;
 mod camera;
 mod depth_interval;
 mod grid;
 mod interleave;
 mod rectangle;
 
+pub(crate) use bounds::ViewBounds;
 pub use camera::Camera;
 #[cfg(feature = "serde")]
 pub(crate) use camera::CameraParts;
