@@ -11,6 +11,9 @@ pub(super) const LANES: usize = MAX_LANES;
 /// One value for each of sixteen lights.
 pub(super) type Lanes<T = f32> = [T; LANES];
 
+/// The number of vectors in a chunk where they are narrowest, of four lanes.
+pub(super) const MAX_PARTS: usize = LANES / 4;
+
 /// The number of vectors of this width in a chunk.
 pub(super) const fn parts<S: Simd>() -> usize {
     LANES / S::f32s::LEN

@@ -4,7 +4,7 @@ use fearless_simd::{Simd, SimdBase, SimdMask};
 
 use super::batch::Chunk;
 use super::filter::{in_depth, load_fields};
-use super::lanes::{LANES, Lanes, load, parts, store};
+use super::lanes::{LANES, Lanes, MAX_PARTS, load, parts, store};
 use super::{LightBatch, LightLists};
 use crate::num::F32Lanes;
 use crate::touch::BoxTest;
@@ -78,27 +78,52 @@ pub(super) fn write_touching<S: Simd, P: BoxTest>(
     let (mut end, mut tested, mut first) = (0, 0, 0);
     let groups = lights.chunks().chunks(LANES).zip(rows.chunks(LANES));
     for ((chunks, rows), reach) in groups.zip(lights.reach()) {
-        let mut candidates = in_depth(simd, reach, tile);
+        let candidates = in_depth(simd, reach, tile);
         tested += candidates.count_ones() as usize;
-        while candidates != 0 {
-            let index = candidates.trailing_zeros() as usize;
-            candidates &= candidates - 1;
+        let mut vectors = [0; MAX_PARTS * LANES];
+        let count = within_bounds(simd, chunks, candidates, tile, &mut vectors);
+        for vector in &vectors[..count] {
+            let (index, part) = (*vector as usize / MAX_PARTS, *vector as usize % MAX_PARTS);
             let (chunk, row) = (&chunks[index], &rows[index].0);
-            for part in 0..parts::<S>() {
-                let mut shared = P::row_of(F32Lanes::new(simd, 0.0));
-                for (vector, lanes) in shared.as_mut().iter_mut().zip(row.as_ref()) {
-                    *vector = load(simd, lanes, part);
-                }
-                let fields = load_fields(simd, chunk, part);
-                let apart = P::bounds_of(&fields).are_apart(tile);
-                let touching = !(apart | P::misses(&fields, &shared, tile));
-                let numbers = values(first + index, chunk, part);
-                end += write_chosen::<S>(numbers, touching, &mut out[end..end + S::u32s::LEN]);
+            let mut shared = P::row_of(F32Lanes::new(simd, 0.0));
+            for (vector, lanes) in shared.as_mut().iter_mut().zip(row.as_ref()) {
+                *vector = load(simd, lanes, part);
             }
+            let fields = load_fields(simd, chunk, part);
+            let apart = P::bounds_of(&fields).are_apart(tile);
+            let touching = !(apart | P::misses(&fields, &shared, tile));
+            let numbers = values(first + index, chunk, part);
+            end += write_chosen::<S>(numbers, touching, &mut out[end..end + S::u32s::LEN]);
         }
         first += LANES;
     }
     [end, tested * LANES]
+}
+
+/// Writes to `vectors` which vectors of the `candidates` among `chunks` have a light whose bounds touch `tile`:
+/// [`MAX_PARTS`] times the index of the chunk, plus the part of it. Returns their number.
+///
+/// Does not branch on the result, since it would often be mispredicted.
+#[inline(always)]
+fn within_bounds<S: Simd, P: BoxTest>(
+    simd: S,
+    chunks: &[Chunk<P>],
+    mut candidates: u32,
+    tile: &ViewBounds<F32Lanes<S>>,
+    vectors: &mut [u8; MAX_PARTS * LANES],
+) -> usize {
+    let mut count = 0;
+    while candidates != 0 {
+        let index = candidates.trailing_zeros() as usize % LANES;
+        candidates &= candidates - 1;
+        for part in 0..parts::<S>() {
+            let fields = load_fields(simd, &chunks[index], part);
+            let apart = P::bounds_of(&fields).are_apart(tile);
+            vectors[count % (MAX_PARTS * LANES)] = (index * MAX_PARTS + part) as u8;
+            count += usize::from(!apart.all_true());
+        }
+    }
+    count
 }
 
 /// Writes those of `numbers` that are `chosen` to the front of `out`. The rest of it may change too. Returns
