@@ -6,7 +6,7 @@ use fearless_simd::Simd;
 
 use super::batch::grow;
 use super::exact::append_list_exactly;
-use super::filter::filter;
+use super::filter::{bounds_touching, filter, touching};
 use super::lanes::splat_tile;
 use super::tile_depths::{Area, NONE};
 use super::tile_list::{Row, append_list, fill_rows};
@@ -128,7 +128,12 @@ impl<P: BoxTest> Walk<'_, P> {
             #[inline(always)]
             || {
                 let tile = splat_tile(simd, bounds);
-                self.counters.block_tests += filter(simd, lights, &tile, block);
+                // Tiles follow, whose tests begin with the bounds again. To test boxes pays if smaller blocks do.
+                self.counters.block_tests += if smaller.is_empty() {
+                    filter(simd, lights, &tile, block, bounds_touching)
+                } else {
+                    filter(simd, lights, &tile, block, touching)
+                };
             },
         );
         if !block.is_empty() {

@@ -53,14 +53,30 @@ pub(super) fn touching<S: Simd, P: BoxTest>(
     bits
 }
 
-/// Replaces `kept` by those of `lights` that may touch `tile`, in the same order. Returns the number of
-/// tests.
+/// The bits of the lights of `chunk` whose bounds touch `tile`: all that may touch it, and more.
+#[inline(always)]
+pub(super) fn bounds_touching<S: Simd, P: BoxTest>(
+    simd: S,
+    chunk: &Chunk<P>,
+    tile: &ViewBounds<F32Lanes<S>>,
+) -> u32 {
+    let mut bits = 0;
+    for part in 0..parts::<S>() {
+        let apart = P::bounds_of(&load_fields(simd, chunk, part)).are_apart(tile);
+        bits |= ((!apart).to_bitmask() as u32) << (part * S::f32s::LEN);
+    }
+    bits
+}
+
+/// Replaces `kept` by those of `lights` that touch `tile` by `test`, [`touching`] or [`bounds_touching`], in
+/// the same order. Returns the number of tests.
 #[inline(always)]
 pub(super) fn filter<S: Simd, P: BoxTest>(
     simd: S,
     lights: &LightBatch<P>,
     tile: &ViewBounds<F32Lanes<S>>,
     kept: &mut LightBatch<P>,
+    test: impl Fn(S, &Chunk<P>, &ViewBounds<F32Lanes<S>>) -> u32,
 ) -> u64 {
     let (to, to_reach) = kept.make_room_for(lights);
     let (mut len, mut tested) = (0, 0);
@@ -70,7 +86,7 @@ pub(super) fn filter<S: Simd, P: BoxTest>(
         while candidates != 0 {
             let index = candidates.trailing_zeros() as usize % LANES;
             candidates &= candidates - 1;
-            let bits = touching(simd, &group[index], tile);
+            let bits = test(simd, &group[index], tile);
             if bits != 0 {
                 let end = len + bits.count_ones() as usize;
                 append(simd, &group[index], bits, to, len);
