@@ -116,7 +116,7 @@ pub fn make(subjects: &[Subject], done: &dyn Fn()) -> Study {
                   geometric mean of scenes and roughnesses, and for the worst of them in brackets.",
         sheet: sheet(&rows),
         summary: Some(summary(&rows)),
-        picture: Some(picture(&subjects[0])),
+        picture: Some(picture(&small[0])),
         figure: Figure {
             title: "Spread ξ: error against the number of frames".into(),
             subtitle: format!(
