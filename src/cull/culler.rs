@@ -53,14 +53,14 @@ pub struct Culler<P: BoxTest> {
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CullCounters {
-    /// Box tests of a light against a block of tiles. Tests of a chunk count for all its sixteen lanes.
+    /// Tests of a light against a block of tiles. Tests of a chunk count for all its sixteen lanes.
     pub block_tests: u64,
-    /// Box tests of a light against a depth interval of a tile. Tests of a chunk count for all its sixteen
+    /// Tests of a light against a depth interval of a tile. Tests of a chunk count for all its sixteen
     /// lanes.
     pub tile_tests: u64,
     /// Depth intervals and whole blocks of tiles that have no surfaces and were skipped.
     pub empty: u64,
-    /// Pairs of a light and a depth interval that pass the box test and fail the exact test. Zero without
+    /// Pairs of a light and a depth interval for which `touches` is true and the exact test fails. Zero without
     /// the exact test.
     pub rejected_exactly: u64,
     /// Pairs of a light and a depth interval in the lists: [`LightLists::len`].
@@ -130,11 +130,12 @@ impl<P: BoxTest> Culler<P> {
         }
     }
 
-    /// Returns this culler with the exact test after the box test: lists hold the lights for which
+    /// Returns this culler with the exact test after the test by bounds and box: lists hold the lights for which
     /// [`touches_exactly`](crate::TileTest::touches_exactly) is true.
     ///
-    /// The lists are shorter. Culling takes two to three times as long or more. Worth it if the work for each
-    /// light of a list takes longer than an exact test, which is ten to twenty nanoseconds.
+    /// The lists are shorter by a few per cent, and culling takes two to four times as long. Rarely worth it:
+    /// only if the work for each light of a list takes a hundred times as long as an exact test, which is ten to
+    /// twenty nanoseconds.
     ///
     /// ```
     /// use stochastic_light_culling::{

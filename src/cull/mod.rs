@@ -9,7 +9,7 @@
 //! 3. [`Culler`] subdivides the grid into blocks, those into smaller blocks, and the last ones into tiles
 //!    (`block`). For each block, `filter` copies the lights that may touch it, so that only these are tested
 //!    against its parts. For each depth interval of each tile, `tile_list` appends the indices of the lights
-//!    that may touch it to [`LightLists`]. `exact` does the same with the exact test after the box test.
+//!    that may touch it to [`LightLists`]. `exact` does the same with the exact test after that.
 //! 4. `parallel` gives blocks to threads and concatenates their lists.
 //!
 //! # Layout

@@ -225,13 +225,17 @@ const fn rotated(bits: u32, by: u32) -> u32 {
 }
 
 #[cfg(test)]
+#[expect(
+    clippy::large_stack_arrays,
+    reason = "without an allocator there is no heap"
+)]
 mod tests {
     use super::*;
 
     /// Consecutive places are cells side by side, and each cell is visited once.
     #[test]
     fn the_curve_is_continuous() {
-        let mut cells = std::vec![[u32::MAX; 3]; 1 << 12];
+        let mut cells = [[u32::MAX; 3]; 1 << 12];
         for cell in 0..1 << 12 {
             let cell = [cell % 16, cell / 16 % 16, cell / 256];
             cells[place_of(octants(cell)) as usize] = cell;
@@ -246,20 +250,23 @@ mod tests {
     /// The curve continues from one cube of sixteen cells to the next at all levels.
     #[test]
     fn ends_meet() {
-        let mut ends = std::collections::HashMap::new();
+        // The first and the last cell of each cube, along the curve.
+        let mut ends = [[[u32::MAX; 3]; 2]; 1 << 12];
         for block in 0..1 << 12_u32 {
             let corner = [block % 16, block / 16 % 16, block / 256].map(|x| 16 * x);
             for offset in 0..1 << 12_u32 {
                 let [x, y, z] = [offset % 16, offset / 16 % 16, offset / 256];
                 let cell = [corner[0] + x, corner[1] + y, corner[2] + z];
                 let place = place_of(octants(cell));
-                if [0, 4095].contains(&(place % 4096)) {
-                    ends.insert(place, cell);
+                match place % 4096 {
+                    0 => ends[place as usize / 4096][0] = cell,
+                    4095 => ends[place as usize / 4096][1] = cell,
+                    _ => {}
                 }
             }
         }
-        for block in 1..4096 {
-            let (before, after) = (ends[&(block * 4096 - 1)], ends[&(block * 4096)]);
+        for pair in ends.windows(2) {
+            let (before, after) = (pair[0][1], pair[1][0]);
             let apart: u32 = (0..3).map(|k| before[k].abs_diff(after[k])).sum();
             assert_eq!(apart, 1, "{before:?} {after:?}");
         }
