@@ -67,17 +67,34 @@ impl Light {
         let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(Vec3::truncate);
         let (left, right) = (x * tile.min.x, x * tile.max.x);
         let (top, bottom) = (y * tile.min.y, y * tile.max.y);
-        [
-            left.min(right) + top.min(bottom) + z,
-            left.max(right) + top.max(bottom) + z,
-        ]
+        let ends = |[a, b]: [f32; 2], [c, d]: [f32; 2], z| {
+            let low = lesser(a, b) + lesser(c, d) + z;
+            [low, greater(a, b) + greater(c, d) + z]
+        };
+        let [low_x, high_x] = ends([left.x, right.x], [top.x, bottom.x], z.x);
+        let [low_y, high_y] = ends([left.y, right.y], [top.y, bottom.y], z.y);
+        [Vec2::new(low_x, low_y), Vec2::new(high_x, high_y)]
     }
 
     fn touches(&self, low: Vec2, high: Vec2, [near, far]: [f32; 2]) -> bool {
-        let m = self.matrix.z_axis.z;
-        let low = (low * near).min(low * far).extend(m * near);
-        let high = (high * near).max(high * far).extend(m * far);
-        let apart = (low - self.center).max(self.center - high).max(Vec3::ZERO);
-        apart.length_squared() <= 1.0
+        let (m, center) = (self.matrix.z_axis.z, self.center);
+        let apart = |center: f32, low: f32, high: f32| center - lesser(greater(center, low), high);
+        let at_depths = |center, low: f32, high: f32| {
+            let low = lesser(low * near, low * far);
+            apart(center, low, greater(high * near, high * far))
+        };
+        let x = at_depths(center.x, low.x, high.x);
+        let y = at_depths(center.y, low.y, high.y);
+        let z = apart(center.z, m * near, m * far);
+        x * x + y * y + z * z <= 1.0
     }
+}
+
+/// One instruction, which `f32::min` is not, since it takes care of NaN.
+fn lesser(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
