@@ -100,6 +100,9 @@ pub(super) fn write_touching<S: Simd, P: BoxTest>(
     [end, tested * LANES]
 }
 
+/// Up to so many vectors are not compared by their bounds alone, which would take as long as it saves.
+const FEW: u32 = 2;
+
 /// Writes to `vectors` which vectors of the `candidates` among `chunks` have a light whose bounds touch `tile`:
 /// [`MAX_PARTS`] times the index of the chunk, plus the part of it. Returns their number.
 ///
@@ -112,15 +115,20 @@ fn within_bounds<S: Simd, P: BoxTest>(
     tile: &ViewBounds<F32Lanes<S>>,
     vectors: &mut [u8; MAX_PARTS * LANES],
 ) -> usize {
+    let are_few = candidates.count_ones() * parts::<S>() as u32 <= FEW;
     let mut count = 0;
     while candidates != 0 {
         let index = candidates.trailing_zeros() as usize % LANES;
         candidates &= candidates - 1;
         for part in 0..parts::<S>() {
-            let fields = load_fields(simd, &chunks[index], part);
-            let apart = P::bounds_of(&fields).are_apart(tile);
             vectors[count % (MAX_PARTS * LANES)] = (index * MAX_PARTS + part) as u8;
-            count += usize::from(!apart.all_true());
+            count += if are_few {
+                1
+            } else {
+                let fields = load_fields(simd, &chunks[index], part);
+                let apart = P::bounds_of(&fields).are_apart(tile);
+                usize::from(!apart.all_true())
+            };
         }
     }
     count
