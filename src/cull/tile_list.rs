@@ -100,8 +100,9 @@ pub(super) fn write_touching<S: Simd, P: BoxTest>(
     [end, tested * LANES]
 }
 
-/// Up to so many vectors are not compared by their bounds alone, which would take as long as it saves.
-const FEW: u32 = 2;
+/// So few vectors are not compared by their bounds alone. All of them have lights in the block of the tile, so
+/// most have one in the tile, and to compare them twice takes longer than it saves.
+const FEW: usize = 2;
 
 /// Writes to `vectors` which vectors of the `candidates` among `chunks` have a light whose bounds touch `tile`:
 /// [`MAX_PARTS`] times the index of the chunk, plus the part of it. Returns their number.
@@ -115,7 +116,7 @@ fn within_bounds<S: Simd, P: BoxTest>(
     tile: &ViewBounds<F32Lanes<S>>,
     vectors: &mut [u8; MAX_PARTS * LANES],
 ) -> usize {
-    let are_few = candidates.count_ones() * parts::<S>() as u32 <= FEW;
+    let are_few = chunks.len() * parts::<S>() <= FEW;
     let mut count = 0;
     while candidates != 0 {
         let index = candidates.trailing_zeros() as usize % LANES;
