@@ -82,7 +82,7 @@ impl Reach {
 /// [`push`](Self::push) adds one that is projected already. Keeps its memory when cleared.
 ///
 /// Lists hold their lights in the order of the batch. The order does not change which lights a list holds,
-/// but it does change the speed: lights that are added roughly from near to far are culled about twice as
+/// but it does change the speed: lights that are added roughly from near to far are culled 1.2 to 1.5 times as
 /// fast, since sixteen lights that reach the same depths are skipped at once.
 /// [`DepthOrder`](super::DepthOrder) gives such an order.
 ///
