@@ -68,6 +68,20 @@ fn numbers_are_uniform_over_lights_and_frames() {
     assert!(is_uniform(|light| Seed(3).frame(9).xi(light)));
 }
 
+/// No subregion of one seed is one of another seed.
+#[test]
+fn seeds_share_no_subregions() {
+    let mut seen = std::collections::HashSet::new();
+    for seed in 0..64 {
+        for subregion in 0..64 {
+            assert!(
+                seen.insert(Seed(seed).subregion(subregion)),
+                "{seed}, {subregion}"
+            );
+        }
+    }
+}
+
 /// The offsets of seeds, and of the subregions of a seed, are independent.
 #[test]
 fn offsets_show_no_lattice() {

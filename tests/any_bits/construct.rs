@@ -147,10 +147,15 @@ fn others(bits: &mut Bits, cameras: &[Camera]) {
     }
     if let (Ok(roulette), Ok(xi)) = (Roulette::new(bits.number()), Xi::new(bits.number())) {
         probe::roulette(&roulette, xi);
-        probe::roulette(
-            &roulette,
-            Seed(bits.word()).frame(bits.word()).xi(bits.word()),
-        );
+        let seed = Seed(bits.word()).subregion(bits.word());
+        let (frame, light) = (seed.frame(bits.word()), bits.word());
+        for xi in [
+            frame.xi(light),
+            frame.xi_of_rank(light),
+            frame.hashed_xi(light),
+        ] {
+            probe::roulette(&roulette, xi);
+        }
     }
     if let Ok(light) = Vpl::new(bits.vector(), bits.number(), ConstantLobe) {
         assert!(!light.radiant_intensity(Vec3::Z).is_nan());
