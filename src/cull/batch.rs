@@ -249,16 +249,30 @@ impl<P: Projected> LightBatch<P> {
         &self.reach[..self.chunks().len().div_ceil(LANES)]
     }
 
-    /// Removes all lights, and returns chunks for as many lights as `other` has, with empty ranges of depths.
-    /// The caller fills them and then calls [`set_len`](Self::set_len).
-    pub(super) fn make_room_for(&mut self, other: &Self) -> (&mut [Chunk<P>], &mut [Reach]) {
-        self.len = 0;
-        // One more chunk, since the lights of the last one can cross into it.
-        let (chunks, reach) = (other.chunks().len() + 1, other.reach().len() + 1);
+    /// Makes room for as many lights as `other` has, so that filtering those does not allocate.
+    pub(super) fn reserve_for(&mut self, other: &Self) {
+        let chunks = other.chunks().len() + GROUP_ROOM;
+        grow(&mut self.chunks, chunks, Chunk::nowhere);
+        grow(&mut self.reach, chunks.div_ceil(LANES), || Reach::NONE);
+    }
+
+    /// Chunks with room for the lights of sixteen chunks after the first `len` lights, and their ranges of
+    /// depths, which are empty for chunks that hold no lights. The caller fills them from the front and then
+    /// calls [`set_len`](Self::set_len).
+    #[inline(always)]
+    pub(super) fn room_after(&mut self, len: usize) -> (&mut [Chunk<P>], &mut [Reach]) {
+        let chunks = len / LANES + GROUP_ROOM;
+        let (reach, begun) = (chunks.div_ceil(LANES), len.div_ceil(LANES).div_ceil(LANES));
         grow(&mut self.chunks, chunks, Chunk::nowhere);
         grow(&mut self.reach, reach, || Reach::NONE);
-        self.reach[..reach].fill(Reach::NONE);
+        self.reach[begun..reach].fill(Reach::NONE);
         (&mut self.chunks[..chunks], &mut self.reach[..reach])
+    }
+
+    /// The number of chunks that there is room for.
+    #[cfg(all(test, feature = "rayon"))]
+    pub(super) fn room(&self) -> usize {
+        self.chunks.len()
     }
 
     /// Sets the number of lights.
@@ -280,6 +294,10 @@ impl<P: Projected> Extend<(u32, P)> for LightBatch<P> {
         }
     }
 }
+
+/// Chunks to reserve for the lights of sixteen chunks: they begin within a chunk and end within another, and
+/// lights that are copied a vector at a time reach into one more.
+const GROUP_ROOM: usize = LANES + 2;
 
 /// The least number of values that a buffer has room for.
 const LEAST_ROOM: usize = 32;

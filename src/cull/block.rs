@@ -38,6 +38,12 @@ impl<P: BoxTest> Scratch<P> {
         }
     }
 
+    /// The number of chunks that there is room for.
+    #[cfg(all(test, feature = "rayon"))]
+    pub fn chunks(&self) -> usize {
+        self.blocks.iter().map(LightBatch::room).sum()
+    }
+
     /// Prepares for `levels` levels of blocks, and resets the counters.
     pub fn begin(&mut self, levels: usize) {
         self.blocks
@@ -56,11 +62,13 @@ impl<P: BoxTest> Scratch<P> {
         area: Area,
         lists: &mut LightLists,
     ) {
-        if area.is_all_of(tiles) {
-            // No block has more lights, so later frames need no more room. Workers have a share each.
+        // No block has more lights, so later frames need no more room. Workers have a share each.
+        let reserves = area.is_all_of(tiles);
+        if reserves {
             grow(&mut self.rows, lights.chunks().len(), Row::zero);
         }
         let mut walk = Walk {
+            reserves,
             tiles,
             lists,
             origin: area.min,
@@ -79,6 +87,8 @@ impl<P: BoxTest> Scratch<P> {
 
 /// The state of one walk over the tiles of an area.
 struct Walk<'a, P: BoxTest> {
+    /// Whether blocks have room for all lights, so that no later frame allocates.
+    reserves: bool,
     tiles: &'a TileDepths,
     lists: &'a mut LightLists,
     /// The tile whose lists come first, \[column, row\].
@@ -124,6 +134,9 @@ impl<P: BoxTest> Walk<'_, P> {
         let [block, smaller @ ..] = blocks else {
             return self.subdivide(simd, lights, area, blocks);
         };
+        if self.reserves {
+            block.reserve_for(lights);
+        }
         simd.vectorize(
             #[inline(always)]
             || {

@@ -78,9 +78,9 @@ pub(super) fn filter<S: Simd, P: BoxTest>(
     kept: &mut LightBatch<P>,
     test: impl Fn(S, &Chunk<P>, &ViewBounds<F32Lanes<S>>) -> u32,
 ) -> u64 {
-    let (to, to_reach) = kept.make_room_for(lights);
     let (mut len, mut tested) = (0, 0);
     for (group, reach) in lights.chunks().chunks(LANES).zip(lights.reach()) {
+        let (to, to_reach) = kept.room_after(len);
         let mut candidates = in_depth(simd, reach, tile);
         tested += candidates.count_ones();
         while candidates != 0 {
@@ -97,7 +97,7 @@ pub(super) fn filter<S: Simd, P: BoxTest>(
             }
         }
     }
-    clear_after(simd, to, len);
+    clear_after(simd, kept.room_after(len).0, len);
     kept.set_len(len);
     u64::from(tested) * LANES as u64
 }

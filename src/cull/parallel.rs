@@ -113,6 +113,62 @@ impl<P: BoxTest> Worker<P> {
         } = self;
         lists.reset(area.size(), tiles.intervals() as usize);
         dispatch!(level, simd => scratch.cull(simd, batch, tiles, *area, lists));
-        lists.finish(batch.room_for_a_list());
+        // Not room for a longest list, which each of many workers would have.
+        lists.finish(0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Vec2, Vec3};
+
+    use super::*;
+    use crate::bound::Sphere;
+    use crate::project::ProjectedSphere;
+    use crate::view::{Camera, DepthInterval, TileRectangle};
+
+    /// The workers together need little more room than one culler, though they are many.
+    #[test]
+    fn workers_have_a_share_of_the_lights() {
+        let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.5, 1.0, 0.1..100.0);
+        let camera = camera.expect("in range");
+        let mut batch = LightBatch::<ProjectedSphere>::new();
+        for light in 0..100_000_u32 {
+            // Spread over the view.
+            let [x, y] =
+                [0.618_034, 0.754_878].map(|step: f32| (step * light as f32).fract() - 0.5);
+            let sphere = Sphere::new(Vec3::new(16.0 * x, 16.0 * y, -10.0), 0.05);
+            batch.extend(
+                sphere
+                    .expect("in range")
+                    .project(&camera)
+                    .map(|shape| (light, shape)),
+            );
+        }
+        let corner = |[x, y]: [u32; 2]| Vec2::new(x as f32, y as f32) / 64.0 - 1.0;
+        let tile = |[x, y]: [u32; 2]| {
+            TileRectangle::new(corner([x, y]), corner([x + 1, y + 1])).expect("in order")
+        };
+        let mut tiles = TileDepths::from_rectangles([128, 128], 1, tile).expect("not empty");
+        for y in 0..128 {
+            for x in 0..128 {
+                tiles.set([x, y], [DepthInterval::new(9.0, 11.0).ok()]);
+            }
+        }
+
+        let (mut one, mut many) = (Culler::new(), Culler::new());
+        let [mut lists, mut lists_of_many] = [LightLists::new(), LightLists::new()];
+        let counters = one.cull(&batch, &tiles, &mut lists);
+        assert!(counters.expect("few").pairs > 0);
+        let counters = many.cull_in_parallel(&batch, &tiles, &mut lists_of_many);
+        counters.expect("few");
+        assert!(lists == lists_of_many);
+        let room: usize = many
+            .workers
+            .iter()
+            .map(|worker| worker.scratch.chunks())
+            .sum();
+        assert!(many.workers.len() > 50);
+        assert!(room < 2 * one.scratch.chunks(), "{room} chunks, {}", one.scratch.chunks());
     }
 }
