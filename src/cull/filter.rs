@@ -43,14 +43,15 @@ pub(super) fn touching<S: Simd, P: BoxTest>(
     chunk: &Chunk<P>,
     tile: &ViewBounds<F32Lanes<S>>,
 ) -> u32 {
-    let mut bits = 0;
-    for part in 0..parts::<S>() {
-        let fields = load_fields(simd, chunk, part);
-        let apart = P::bounds_of(&fields).are_apart(tile);
-        let misses = apart | P::misses(&fields, &P::row(&fields, tile.down), tile);
-        bits |= ((!misses).to_bitmask() as u32) << (part * S::f32s::LEN);
-    }
-    bits
+    bits_where(
+        simd,
+        chunk,
+        #[inline(always)]
+        |fields| {
+            let apart = P::bounds_of(fields).are_apart(tile);
+            !(apart | P::misses(fields, &P::row(fields, tile.down), tile))
+        },
+    )
 }
 
 /// The bits of the lights of `chunk` whose bounds touch `tile`: all that may touch it, and more.
@@ -60,10 +61,25 @@ pub(super) fn bounds_touching<S: Simd, P: BoxTest>(
     chunk: &Chunk<P>,
     tile: &ViewBounds<F32Lanes<S>>,
 ) -> u32 {
+    bits_where(
+        simd,
+        chunk,
+        #[inline(always)]
+        |fields| !P::bounds_of(fields).are_apart(tile),
+    )
+}
+
+/// The bits of the lights of `chunk` for whose fields `test` is true.
+#[inline(always)]
+fn bits_where<S: Simd, P: Projected>(
+    simd: S,
+    chunk: &Chunk<P>,
+    test: impl Fn(&P::Fields<F32Lanes<S>>) -> S::mask32s,
+) -> u32 {
     let mut bits = 0;
     for part in 0..parts::<S>() {
-        let apart = P::bounds_of(&load_fields(simd, chunk, part)).are_apart(tile);
-        bits |= ((!apart).to_bitmask() as u32) << (part * S::f32s::LEN);
+        let is_true = test(&load_fields(simd, chunk, part));
+        bits |= (is_true.to_bitmask() as u32) << (part * S::f32s::LEN);
     }
     bits
 }

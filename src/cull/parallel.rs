@@ -169,6 +169,10 @@ mod tests {
             .map(|worker| worker.scratch.chunks())
             .sum();
         assert!(many.workers.len() > 50);
-        assert!(room < 2 * one.scratch.chunks(), "{room} chunks, {}", one.scratch.chunks());
+        assert!(
+            room < 2 * one.scratch.chunks(),
+            "{room} chunks, {}",
+            one.scratch.chunks()
+        );
     }
 }
