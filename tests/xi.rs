@@ -68,6 +68,39 @@ fn numbers_are_uniform_over_lights_and_frames() {
     assert!(is_uniform(|light| Seed(3).frame(9).xi(light)));
 }
 
+/// Two lights of a seed are independent, over seeds: their ξ together fill the unit square. (Not so for lights
+/// 2³¹ apart, whose indices differ in the bit that products spread least.)
+#[test]
+fn lights_are_independent() {
+    const SIDE: usize = 64;
+    const SEEDS: u32 = 1 << 17;
+    let ways: [fn(u32, u32) -> Xi; 2] = [
+        |seed, light| Seed(seed).frame(3).xi(light),
+        |seed, light| Seed(seed).frame(3).hashed_xi(light),
+    ];
+    for draw in ways {
+        for [first, second] in [
+            [0, 1],
+            [0, 2],
+            [1, 2],
+            [2, 3],
+            [7, 8],
+            [0, 64],
+            [5, 1 << 20],
+        ] {
+            let bin = |xi: Xi| ((xi.get() * SIDE as f32) as usize).min(SIDE - 1);
+            let mut bins = vec![0.0; SIDE * SIDE];
+            for seed in 0..SEEDS {
+                bins[bin(draw(seed, first)) * SIDE + bin(draw(seed, second))] += 1.0;
+            }
+            let freedom = (SIDE * SIDE - 1) as f64;
+            let deviation =
+                (chi_squared(&bins, f64::from(SEEDS)) - freedom) / (2.0 * freedom).sqrt();
+            assert!(deviation.abs() < 5.0, "{first}, {second}: {deviation}");
+        }
+    }
+}
+
 /// No subregion of one seed is one of another seed.
 #[test]
 fn seeds_share_no_subregions() {
@@ -88,9 +121,18 @@ fn offsets_show_no_lattice() {
     for lag in [1, 2, 3, 4, 8, 16, 256] {
         let along_seeds = |seed| Seed(seed).frame(0).xi_of_rank(0);
         assert!(pairs_fill_the_square(&along_seeds, lag), "lag {lag}");
-        let along_lights = |light| Seed(9).frame(0).xi(light);
-        assert!(pairs_fill_the_square(&along_lights, lag), "lag {lag}");
-        for seed in [0, 1, 7, u32::MAX] {
+        for seed in [0, 1, 7, 2026, 634_785_765, 1 << 31, u32::MAX] {
+            let along_lights = |light| Seed(seed).frame(0).xi(light);
+            assert!(
+                pairs_fill_the_square(&along_lights, lag),
+                "seed {seed}, lag {lag}"
+            );
+            // One light in many seeds.
+            let along_seeds = |i| Seed(i).frame(0).xi(seed);
+            assert!(
+                pairs_fill_the_square(&along_seeds, lag),
+                "light {seed}, lag {lag}"
+            );
             let along_subregions = |subregion| {
                 let seed = Seed(seed).subregion(subregion);
                 seed.frame(0).xi_of_rank(0)
