@@ -127,7 +127,9 @@ impl FrameSeed {
     #[inline]
     #[must_use]
     pub fn xi(self, light: u32) -> Xi {
-        let [bits, _] = hashed_with(light, self.key);
+        // The index needs no generator of its own: the key is hashed, and moves it first.
+        let [first, second] = self.key;
+        let [bits, _] = stirred(light, first, second);
         Xi::from_bits(bits.wrapping_add(self.frame.wrapping_mul(GOLDEN_STEP)))
     }
 
@@ -152,7 +154,8 @@ impl FrameSeed {
     #[inline]
     #[must_use]
     pub fn hashed_xi(self, light: u32) -> Xi {
-        let [bits, _] = hashed_with(light, self.frame_key);
+        let [first, second] = self.frame_key;
+        let [bits, _] = stirred(congruential(light), first, second);
         Xi::from_bits(bits)
     }
 }
@@ -162,12 +165,6 @@ impl FrameSeed {
 fn hashed(words: [u32; 3]) -> [u32; 2] {
     let [x, y, z] = words.map(congruential);
     stirred(x, y, z)
-}
-
-/// [`hashed`] with two words that are hashed already.
-#[inline]
-fn hashed_with(word: u32, [first, second]: Key) -> [u32; 2] {
-    stirred(congruential(word), first, second)
 }
 
 /// The linear congruential generator, the first step of pcg3d.
