@@ -1,0 +1,198 @@
+//! Lists are those of the scalar test, light by light, in every width and on many cores.
+
+use proptest::prelude::*;
+use stochastic_light_culling::{
+    BoxTest, CullCounters, Culler, DepthInterval, Ellipsoid, LightBatch, LightLists,
+    PixelRectangle, ProjectedEllipsoid, TileDepths, TileRectangle,
+    glam::{Mat3, Vec2, Vec3},
+};
+use support::generators::cases;
+
+use super::grid::{Grid, camera, grid, sphere, stretch};
+
+/// The parallel lists are the serial ones, to the last number.
+#[cfg(feature = "rayon")]
+fn culled_in_parallel_as_serially<T: BoxTest + Send + Sync>(
+    grid: &Grid,
+    shapes: &[T],
+) -> Result<(), TestCaseError> {
+    let tiles = grid.tile_depths();
+    let mut batch = LightBatch::new();
+    batch.extend((0..).zip(shapes.iter().copied()));
+    for mut culler in [Culler::new(), Culler::new().with_exact_test()] {
+        let [mut serial, mut parallel] = [LightLists::new(), LightLists::new()];
+        let counters = culler.cull(&batch, &tiles, &mut serial).unwrap();
+        let counted = culler.cull_in_parallel(&batch, &tiles, &mut parallel);
+        prop_assert_eq!(serial.ranges(), parallel.ranges());
+        prop_assert_eq!(serial.lights(), parallel.lights());
+        prop_assert_eq!(counters.rejected_exactly, counted.unwrap().rejected_exactly);
+    }
+    Ok(())
+}
+
+/// All cullers, each of which must find the same.
+fn cullers<T: BoxTest>() -> impl Iterator<Item = Culler<T>> {
+    let flat_or_not = |lanes| {
+        [
+            Culler::with_lanes(lanes),
+            Culler::with_lanes(lanes).without_blocks(),
+        ]
+    };
+    [16, 8, 4].into_iter().flat_map(flat_or_not)
+}
+
+type Test<T> = fn(&T, &TileRectangle, &DepthInterval) -> bool;
+
+fn culled_as_one_by_one<T: BoxTest + Send + Sync>(
+    grid: &Grid,
+    shapes: &[T],
+) -> Result<(), TestCaseError> {
+    #[cfg(feature = "rayon")]
+    culled_in_parallel_as_serially(grid, shapes)?;
+    for culler in cullers() {
+        let boxes = culled_by(culler.clone(), T::touches, grid, shapes)?;
+        let exact = culled_by(culler.with_exact_test(), T::touches_exactly, grid, shapes)?;
+        prop_assert_eq!(boxes.rejected_exactly, 0);
+        prop_assert_eq!(exact.rejected_exactly, boxes.pairs - exact.pairs);
+    }
+    Ok(())
+}
+
+fn culled_by<T: BoxTest>(
+    mut culler: Culler<T>,
+    test: Test<T>,
+    grid: &Grid,
+    shapes: &[T],
+) -> Result<CullCounters, TestCaseError> {
+    let tiles = grid.tile_depths();
+    let mut batch = LightBatch::new();
+    batch.extend((100..).zip(shapes.iter().copied()));
+    let mut lists = LightLists::new();
+    let counters = culler.cull(&batch, &tiles, &mut lists).unwrap();
+    let mut pairs = 0;
+    for (tile, depths) in grid.tiles() {
+        for (interval, depths) in (0..).zip(depths) {
+            let touches = |shape: &T| {
+                depths.is_some_and(|depths| test(shape, &grid.rectangle(tile), &depths))
+            };
+            let touching = (100..).zip(shapes).filter(|(_, shape)| touches(shape));
+            let expected: Vec<u32> = touching.map(|(number, _)| number).collect();
+            let found = lists.of(tile, interval);
+            prop_assert_eq!(found, &expected, "{:?} {:?}", tile, depths);
+            pairs += expected.len();
+        }
+    }
+    prop_assert_eq!(lists.len(), pairs);
+    prop_assert_eq!(counters.pairs, pairs as u64);
+    Ok(counters)
+}
+
+proptest! {
+    #![proptest_config(cases(64))]
+
+    #[test]
+    fn lists_of_ellipsoids_are_those_of_the_scalar_test(
+        grid in grid(),
+        shapes in prop::collection::vec(stretch(), 0..150),
+    ) {
+        culled_as_one_by_one(&grid, &shapes)?;
+    }
+
+    #[test]
+    fn lists_of_spheres_are_those_of_the_scalar_test(
+        grid in grid(),
+        shapes in prop::collection::vec(sphere(), 0..150),
+    ) {
+        culled_as_one_by_one(&grid, &shapes)?;
+    }
+}
+
+/// Of all rectangles that there can be, and of pixels as far outside the image as can be said.
+#[test]
+fn lists_of_extreme_tiles_are_those_of_the_scalar_test() {
+    let mut rng = fastrand::Rng::with_seed(3);
+    let slopes = [0.0, 1e-45, 1.0, 200.0, 1e6, 1e9, 1e18, 1e30, 3e38];
+    let slopes = slopes.iter().flat_map(|slope| [-slope, *slope]);
+    let slopes: Vec<f32> = slopes.collect();
+    let depths = [0.0, 1e-45, 1e-20, 1.0, 2.0, 1e20, f32::MAX];
+    for _ in 0..100 {
+        let side = |rng: &mut fastrand::Rng| {
+            let [a, b] = [(); 2].map(|()| slopes[rng.usize(0..slopes.len())]);
+            TileRectangle::new(Vec2::splat(a.min(b)), Vec2::splat(a.max(b))).ok()
+        };
+        let [across, down] = [(); 2].map(|()| -> Vec<TileRectangle> {
+            std::iter::repeat_with(|| side(&mut rng))
+                .flatten()
+                .take(12)
+                .collect()
+        });
+        let of_pixels = rng.bool();
+        let rectangle = |[x, y]: [u32; 2]| {
+            if of_pixels {
+                let min = [x, y].map(|n| if n == 0 { 0 } else { u32::MAX >> (2 * n) });
+                let max = [x, y].map(|n| u32::MAX >> n);
+                return camera().tile_rectangle([1, 1], PixelRectangle { min, max });
+            }
+            let [across, down] = [across[x as usize], down[y as usize]];
+            let (x, y) = (
+                [across.min().x, across.max().x],
+                [down.min().y, down.max().y],
+            );
+            TileRectangle::new(Vec2::new(x[0], y[0]), Vec2::new(x[1], y[1])).unwrap()
+        };
+        let mut tiles = TileDepths::from_rectangles([12, 12], 1, rectangle).unwrap();
+        let mut seen = Vec::new();
+        for tile in (0..144).map(|i| [i % 12, i / 12]) {
+            let [a, b] = [(); 2].map(|()| depths[rng.usize(0..depths.len())]);
+            let interval = DepthInterval::new(a.min(b), a.max(b)).unwrap();
+            tiles.set(tile, [interval]);
+            seen.push((tile, interval));
+        }
+        let shapes: Vec<ProjectedEllipsoid> = (0..60)
+            .map(|_| {
+                let mut size =
+                    |least: f32, most: f32| 10_f32.powf(least + (most - least) * rng.f32());
+                let longest = size(-38.0, 38.0);
+                let semi_axes = Vec3::new(1.0, size(-8.9, 0.0), size(-8.9, 0.0)) * longest;
+                let semi_axes = semi_axes.max(Vec3::splat(f32::MIN_POSITIVE));
+                let distance = size(-38.0, 38.0);
+                let way = Vec3::new(size(-6.0, 0.0), -size(-6.0, 0.0), size(-6.0, 0.0) - 0.5);
+                let rotation =
+                    Mat3::from_rotation_y(size(-4.0, 1.0)) * Mat3::from_rotation_z(size(-4.0, 1.0));
+                let ellipsoid = Ellipsoid::new(way * distance, rotation, semi_axes).unwrap();
+                let stretch = ellipsoid.project(&camera()).unwrap();
+                // What the limit of the slopes relies on.
+                let elements = stretch.matrix().to_cols_array();
+                assert!(elements.iter().all(|element| element.abs() <= 1e33));
+                assert!(stretch.center().is_finite());
+                stretch
+            })
+            .collect();
+        let mut batch = LightBatch::new();
+        batch.extend((0..).zip(shapes.iter().copied()));
+        for exact in [false, true] {
+            for culler in cullers() {
+                let mut culler = if exact {
+                    culler.with_exact_test()
+                } else {
+                    culler
+                };
+                let mut lists = LightLists::new();
+                culler.cull(&batch, &tiles, &mut lists).unwrap();
+                for (tile, depths) in &seen {
+                    let rectangle = rectangle(*tile);
+                    let touches = |shape: &ProjectedEllipsoid| {
+                        if exact {
+                            shape.touches_exactly(&rectangle, depths)
+                        } else {
+                            shape.touches(&rectangle, depths)
+                        }
+                    };
+                    let touching = (0..).zip(&shapes).filter(|(_, shape)| touches(shape));
+                    let expected: Vec<u32> = touching.map(|(number, _)| number).collect();
+                    assert_eq!(lists.of(*tile, 0), expected, "{rectangle:?} {depths:?}");
+                }
+            }
+        }
+    }
+}
