@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use stochastic_light_culling::{
     Bounded, Camera, DepthInterval, Ellipsoid, Ggx, GgxLobe, HalfSpace, Incidence, NoFresnel,
-    Paper, PixelRectangle, ProjectedEllipsoid, Sphere, TileGrid, TileRectangle,
-    glam::{DVec3, Vec2, Vec3},
+    Paper, PixelRectangle, Sphere, TileGrid, TileRectangle,
+    glam::{DMat3, DVec3, Vec2, Vec3},
 };
 use support::generators;
 use support::reference::{Shape, Vector, exact::outward};
@@ -43,9 +43,8 @@ fn widened(
 }
 
 /// By how much a tile misses, in radii of the unit sphere: below 1 it is touched, above 1 it is not.
-fn miss(stretch: &ProjectedEllipsoid, tile: &TileRectangle, depths: &DepthInterval) -> f64 {
-    let matrix = stretch.matrix().as_dmat3();
-    let (m, center) = (matrix.z_axis.z, stretch.center().as_dvec3());
+fn miss(matrix: DMat3, center: DVec3, tile: &TileRectangle, depths: &DepthInterval) -> f64 {
+    let m = matrix.z_axis.z;
     let reach = [-1.0, 1.0].map(|side| (center.z + side) / m);
     let [near, far] = [depths.near(), depths.far()].map(f64::from);
     let apart_in_depth = (near * m - center.z).max(center.z - far * m);
@@ -66,32 +65,29 @@ fn miss(stretch: &ProjectedEllipsoid, tile: &TileRectangle, depths: &DepthInterv
         plane(0.0, 1.0, -min.y),
         plane(0.0, -1.0, max.y),
     ];
-    let box_distance = box_distance(stretch, tile, [near.max(reach[0]), far.min(reach[1])]);
+    let box_distance = box_distance(
+        matrix,
+        center,
+        tile,
+        [near.max(reach[0]), far.min(reach[1])],
+    );
     // Slopes bound nothing that reaches the plane of the camera.
     let sides = sides.into_iter().filter(|_| center.z > 1.0);
     sides.fold(box_distance, f64::max)
 }
 
-/// The distance of the box test: from Mc′ to the box around the tile's image at these depths.
-fn box_distance(stretch: &ProjectedEllipsoid, tile: &TileRectangle, depths: [f64; 2]) -> f64 {
-    let m = stretch.matrix();
-    let [mx, my, mz] = [m.x_axis, m.y_axis, m.z_axis].map(Vector::from);
-    let center = Vector::from(stretch.center());
-    let mut apart = 0.0;
-    for i in 0..3 {
-        let corners = [tile.min().x, tile.max().x]
-            .into_iter()
-            .flat_map(|x| [tile.min().y, tile.max().y].map(|y| (f64::from(x), f64::from(y))));
-        let images = corners.flat_map(|(x, y)| {
-            let at_one = mx.0[i] * x + my.0[i] * y + mz.0[i];
-            depths.map(|depth| at_one * depth)
-        });
-        let (low, high) = images.fold((f64::MAX, f64::MIN), |(low, high), x| {
-            (low.min(x), high.max(x))
-        });
-        apart += (low - center.0[i]).max(center.0[i] - high).max(0.0).powi(2);
-    }
-    apart.sqrt()
+/// The distance of the box test: from `center` to the box around the tile's image at these depths.
+fn box_distance(matrix: DMat3, center: DVec3, tile: &TileRectangle, depths: [f64; 2]) -> f64 {
+    let (min, max) = (tile.min().as_dvec2(), tile.max().as_dvec2());
+    let corners = [min.x, max.x].map(|x| [min.y, max.y].map(|y| DVec3::new(x, y, 1.0)));
+    let images = corners.as_flattened().iter().flat_map(|corner| {
+        let at_one = matrix * *corner;
+        depths.map(|depth| at_one * depth)
+    });
+    let (low, high) = images.fold((DVec3::MAX, DVec3::MIN), |(low, high), image| {
+        (low.min(image), high.max(image))
+    });
+    center.distance(center.clamp(low, high))
 }
 
 proptest! {
@@ -209,9 +205,36 @@ proptest! {
         let pixels = PixelRectangle { min: [tile.0, tile.1], max: [tile.0 + 1, tile.1 + 1] };
         let rectangle = camera.tile_rectangle([64, 64], pixels);
         let interval = DepthInterval::new(depths.0 as f32, (depths.0 * depths.1) as f32).unwrap();
-        let exact = miss(&stretch, &rectangle, &interval);
+        let matrix = stretch.matrix().as_dmat3();
+        let exact = miss(matrix, stretch.center().as_dvec3(), &rectangle, &interval);
         let touched = stretch.touches(&rectangle, &interval);
         let rim = 1e-4 * (1.0 + exact + f64::from(stretch.center().length()));
+        prop_assert!(touched || exact > 1.0 - rim, "rejected at {exact}");
+        prop_assert!(!touched || exact < 1.0 + rim, "accepted at {exact}");
+    }
+
+    /// A sphere is the ellipsoid with M = 1/r.
+    #[test]
+    fn test_of_a_sphere_is_no_looser_than_its_box_and_planes(
+        center in generators::position(),
+        radius in generators::log_uniform(1e-3, 1e3),
+        view in generators::view(),
+        distance in generators::log_uniform(1e-1, 1e2),
+        tile in (0..64_u32, 0..64_u32),
+        depths in (generators::log_uniform(1e-2, 1e3), 1.0..3.0),
+    ) {
+        let view = view.aimed_at(center, distance * radius);
+        let camera = Camera::new(view.from_world, view.projection).unwrap();
+        let sphere = Sphere::new(center, radius as f32).unwrap().project(&camera).unwrap();
+        let pixels = PixelRectangle { min: [tile.0, tile.1], max: [tile.0 + 1, tile.1 + 1] };
+        let rectangle = camera.tile_rectangle([64, 64], pixels);
+        let near = depths.0 * distance * radius;
+        let interval = DepthInterval::new(near as f32, (near * depths.1) as f32).unwrap();
+        let touched = sphere.touches(&rectangle, &interval);
+        let radius = f64::from(sphere.radius_squared()).sqrt();
+        let unit = sphere.center().as_dvec3() / radius;
+        let exact = miss(DMat3::from_diagonal(DVec3::splat(1.0 / radius)), unit, &rectangle, &interval);
+        let rim = 1e-4 * (1.0 + exact + unit.length());
         prop_assert!(touched || exact > 1.0 - rim, "rejected at {exact}");
         prop_assert!(!touched || exact < 1.0 + rim, "accepted at {exact}");
     }
