@@ -6,7 +6,7 @@ use stochastic_light_culling::{BoxTest, Camera, Error, LambertLobe, Lobe, Roulet
 
 use super::bounds::{self, BoundKind, GlossyLight};
 use super::cull::Cullers;
-use super::shade::shade;
+use super::shade::shade_subregions;
 use super::{Frame, Light, Shaded, Tiles};
 
 /// What one bound costs and what comes of it.
@@ -74,16 +74,31 @@ fn measure<L: Lobe + Sync, T: BoxTest + Send + Sync>(
     let shape = |light: &_| shape(light, &frame.roulette, camera);
     let (batches, bound_ms) = timed(|| bounds::batches(lights, &frame.interleave, shape));
     let measured = |tiling: &Tiling| {
-        let mut cullers = Cullers::new(tiling.tiles);
-        // The first frame makes room for the lists. Like any later one, the second does not.
-        cullers.cull(tiling.tiles, &batches)?;
-        let (culled, cull_ms) = timed(|| cullers.cull(tiling.tiles, &batches));
-        culled?;
-        let list_of = |pixel, depth| {
-            let place = tiling.tiles.place_of(pixel, depth)?;
-            Some(cullers.lists[place.subregion].of(place.tile, place.interval))
-        };
-        let (shaded, shade_ms) = timed(|| shade(frame, tiling.refined, lights, list_of, &done));
+        let subregions = tiling.tiles.subregions();
+        let count = subregions.len();
+        // Enough to keep all threads busy, but not all: their lists would be most of the memory in use.
+        let group = (2 * rayon::current_num_threads()).min(count.div_ceil(2));
+        let mut cullers = Cullers::new(group);
+        let mut shaded = Shaded::black(frame.surfaces.surfaces.len());
+        let (mut cull_ms, mut shade_ms) = (0.0, 0.0);
+        for start in (0..count).step_by(group) {
+            let end = (start + group).min(count);
+            let mut cull = || cullers.cull(&subregions[start..end], &batches[start..end]);
+            // The first time makes room for the lists. Like a later frame, the second does not.
+            cull()?;
+            let (culled, ms) = timed(cull);
+            culled?;
+            cull_ms += ms;
+            let list_of = |pixel, depth| {
+                let place = tiling.tiles.place_of(pixel, depth)?;
+                Some(cullers.lists[place.subregion - start].of(place.tile, place.interval))
+            };
+            let (group, refined) = (start as u32..end as u32, tiling.refined);
+            let shade = || {
+                shade_subregions(frame, group, refined, lights, list_of, &mut shaded, &done);
+            };
+            shade_ms += timed(shade).1;
+        }
         Ok(Measured {
             bound,
             refined: tiling.refined,

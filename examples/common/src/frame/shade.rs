@@ -1,5 +1,7 @@
 //! Irradiance of each pixel from the lights in its list.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use stochastic_light_culling::{Lobe, glam::Vec3};
 
@@ -79,6 +81,22 @@ pub fn shade<'a, L: Lobe + Sync>(
     list_of: impl Fn([u32; 2], f32) -> Option<&'a [u32]> + Sync,
     done: impl Fn() + Sync,
 ) -> Shaded {
+    let mut image = Shaded::black(frame.surfaces.surfaces.len());
+    let all = 0..frame.interleave.subregions();
+    shade_subregions(frame, all, refined, lights, list_of, &mut image, done);
+    image
+}
+
+/// Shades the pixels of some subregions of `image`, as [`shade`] does all.
+pub fn shade_subregions<'a, L: Lobe + Sync>(
+    frame: &Frame,
+    subregions: Range<u32>,
+    refined: bool,
+    lights: &[Light<L>],
+    list_of: impl Fn([u32; 2], f32) -> Option<&'a [u32]> + Sync,
+    image: &mut Shaded,
+    done: impl Fn() + Sync,
+) {
     let shade_pixel = |pixel: [u32; 2]| {
         let surface = frame.surfaces.at(pixel);
         let mut sums = Sums::default();
@@ -91,7 +109,7 @@ pub fn shade<'a, L: Lobe + Sync>(
         Some(sums)
     };
     // Neighbours in a subregion share most of their lights; those in the image, none.
-    let rows = frame.interleaved_rows();
+    let rows = frame.rows_of(subregions);
     let shaded: Vec<Vec<Option<Sums>>> = rows
         .par_iter()
         .map(|row| {
@@ -101,13 +119,11 @@ pub fn shade<'a, L: Lobe + Sync>(
         })
         .collect();
 
-    let mut image = Shaded::black(frame.surfaces.surfaces.len());
     for (pixel, sums) in rows.iter().flatten().zip(shaded.iter().flatten()) {
         if let Some(sums) = sums {
             image.set(frame.surfaces.index(*pixel), sums);
         }
     }
-    image
 }
 
 /// The way from a light to a surface.

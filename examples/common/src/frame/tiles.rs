@@ -26,14 +26,15 @@ pub struct Tiles {
 pub struct Subregion {
     pub grid: TileGrid,
     pub depths: TileDepths,
-    /// Those that `depths` has of each tile, row by row.
-    intervals: Vec<Vec<Option<DepthInterval>>>,
 }
 
 impl Subregion {
     pub fn interval(&self, [x, y]: [u32; 2], interval: u32) -> Option<DepthInterval> {
         let tile = y * self.grid.size()[0] + x;
-        *self.intervals[tile as usize].get(interval as usize)?
+        let first = tile as usize * self.depths.intervals() as usize;
+        let [near, far] = self.depths.depths()[first + interval as usize];
+        // Refused if it is missing.
+        DepthInterval::new(near, far).ok()
     }
 }
 
@@ -105,20 +106,13 @@ impl Tiles {
             let rectangle = |tile| camera.interleaved_tile(interleave, subregion, &grid, tile);
             let mut depths =
                 TileDepths::from_rectangles(grid.size(), slicing.intervals(), rectangle)?;
-            let mut intervals = Vec::new();
             for tile in grid.tiles() {
                 let pixels = grid.pixels(tile).pixels();
                 let seen = pixels.map(|pixel| interleave.join_pixel(subregion, pixel));
                 let seen = seen.map(|pixel| surfaces.at(pixel).depth);
-                let parts = slicing.part(seen);
-                depths.set(tile, parts.iter().copied());
-                intervals.push(parts);
+                depths.set(tile, slicing.part(seen));
             }
-            Ok(Subregion {
-                grid,
-                depths,
-                intervals,
-            })
+            Ok(Subregion { grid, depths })
         };
         Ok(Self {
             interleave: *interleave,
