@@ -27,7 +27,8 @@
 //!   [`Tight`], [`Triaxial`] or [`Paper`]. [`HalfSpace`] is the lit side of a surface, and [`Proxy`] is a
 //!   mesh around a bound, to rasterise it.
 //! - Culling: `BatchBuilder` fills a `LightBatch` with lights, `TileDepths` holds the depths of the tiles,
-//!   and `Culler` fills `LightLists`. [`Interleave`] splits image and lights for interleaved sampling.
+//!   and `Culler` fills `LightLists`. `RadianceEstimator` evaluates the lights of a list at many points.
+//!   [`Interleave`] splits image and lights for interleaved sampling.
 //!
 //! Each step can be used alone and does not depend on the steps after it.
 //!
@@ -92,7 +93,7 @@
 //! they return is valid: no later step fails, panics, allocates or makes NaN from finite arguments. The
 //! exceptions are in culling. It allocates, in general only in its first frame, and returns an error if its
 //! lists would hold 2³² lights. `TileDepths::set` and `TileDepths::interval_of` panic for a tile outside the
-//! grid.
+//! grid, `ShadingBatch::set_xi` and `RadianceEstimator` for a light outside the batch.
 //!
 //! A light that reflects nothing, because its flux is zero or it is lit from behind, is not an error. Its
 //! bound is empty, and projecting an empty bound gives `None` ([`Ellipsoid::project`]).
@@ -139,7 +140,7 @@
 //! - `std` (default): floating-point functions from the standard library.
 //! - `libm`: floating-point functions from the [libm](https://docs.rs/libm) crate. Without `std` the crate
 //!   is `no_std`. One of the two is required; with both, `std` is used.
-//! - `cull`: many lights against many tiles, in the widest vectors of the processor. Needs an allocator and
+//! - `cull`: many lights against many tiles, and their evaluation, in the widest vectors of the processor. Needs an allocator and
 //!   Rust 1.89.
 //! - `rayon`: culling on many cores. Enables `cull` and `std`.
 //! - `serde`: serialization of materials, lobes, lights, cameras, and settings such as roulette, ξ, tile
@@ -202,7 +203,8 @@ pub use bound::{
 };
 #[cfg(feature = "cull")]
 pub use cull::{
-    BatchBuilder, CullCounters, Culler, DepthOrder, LightBatch, LightLists, TileDepths,
+    BatchBuilder, BlockEstimates, CullCounters, Culler, DepthOrder, Estimate, LightBatch,
+    LightLists, PointBlock, RadianceEstimator, ShadedPoint, ShadingBatch, TileDepths,
 };
 #[cfg(feature = "bytemuck")]
 pub use interop::{GpuEllipsoid, GpuSphere};

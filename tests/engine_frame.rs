@@ -30,6 +30,11 @@ fn frames_after_the_first_allocate_nothing() {
             let depths = world.draw_depths(&camera);
             let counters = pass.cull(&camera, depths, frame).unwrap();
             assert!(counters.pairs > 0 && pass.lights_in_reach() > 0);
+            assert!(
+                pass.shade(&camera, depths)
+                    .iter()
+                    .any(|radiance| *radiance > 0.0)
+            );
         };
         let first = allocation_counter::measure(|| draw(0));
         assert!(first.count_total > 0, "nothing is counted");
@@ -71,8 +76,13 @@ fn the_mean_over_frames_is_what_all_lights_give() {
     let mut total = 0.0;
     for frame in 0..FRAMES {
         pass.cull(&camera, &depths, frame).unwrap();
-        total += f64::from(pass.radiance(&camera, &depths, pixel, frame));
+        total += f64::from(pass.radiance(&camera, &depths, pixel));
     }
+    let [last, shaded] = [
+        pass.radiance(&camera, &depths, pixel),
+        pass.shade(&camera, &depths)[(pixel[1] * SIZE[0] + pixel[0]) as usize],
+    ];
+    assert_eq!(last.to_bits(), shaded.to_bits());
     let point = camera.point_in_pixel(
         SIZE,
         pixel,

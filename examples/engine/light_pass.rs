@@ -1,9 +1,11 @@
-//! The part of an engine that this crate does most of: from lights and a depth buffer to lists.
+//! The part of an engine that this crate does most of: from lights and a depth buffer to lists, and from those
+//! to radiance.
 
 use stochastic_light_culling::{
     BatchBuilder, Bounded, Camera, CullCounters, Culler, DepthInterval, DepthOrder, Ellipsoid,
-    Error, GgxLobe, LightBatch, LightLists, ProjectedEllipsoid, Roulette, Schlick, Seed,
-    TileDepths, TileGrid, Vpl, Xi, glam::Vec3, rank_along_curve,
+    Error, GgxLobe, LightBatch, LightLists, PointBlock, ProjectedEllipsoid, RadianceEstimator,
+    Roulette, Schlick, Seed, ShadingBatch, TileDepths, TileGrid, Vpl, Xi, glam::Vec3,
+    rank_along_curve,
 };
 
 pub type Light = Vpl<GgxLobe<Schlick>>;
@@ -22,6 +24,10 @@ pub struct LightPass {
     batch: LightBatch<ProjectedEllipsoid>,
     culler: Culler<ProjectedEllipsoid>,
     lists: LightLists,
+    /// The same lights, with their ξ.
+    shading: ShadingBatch<GgxLobe<Schlick>>,
+    /// Of each pixel, row by row.
+    radiance: Vec<f32>,
 }
 
 impl LightPass {
@@ -36,9 +42,12 @@ impl LightPass {
         let grid = TileGrid::new(size, tile_size)?;
         let roulette = Roulette::new(delta)?;
         let lights = lights.into_iter().map(with_bound).collect();
+        let lights = sorted_by_rank(lights, &roulette)?;
+        let mut shading = ShadingBatch::new();
+        shading.extend((0..).zip(&lights).map(|(i, (light, _))| (light, xi(i, 0))));
         Ok(Self {
             order: DepthOrder::new(),
-            lights: sorted_by_rank(lights, &roulette)?,
+            lights,
             roulette,
             size,
             grid,
@@ -46,6 +55,8 @@ impl LightPass {
             batch: LightBatch::new(),
             culler: Culler::new(),
             lists: LightLists::new(),
+            shading,
+            radiance: vec![0.0; size[0] as usize * size[1] as usize],
         })
     }
 
@@ -63,6 +74,10 @@ impl LightPass {
             self.tiles.set(tile, DepthInterval::modified_half_z(depths));
         }
 
+        for i in 0..self.lights.len() as u32 {
+            self.shading.set_xi(i, xi(i, frame));
+        }
+
         // From near to far, which makes culling faster and changes nothing else.
         let positions = self.lights.iter().map(|(light, _)| light.position());
         let order = self.order.of(positions, camera);
@@ -76,32 +91,65 @@ impl LightPass {
         self.culler.cull(&self.batch, &self.tiles, &mut self.lists)
     }
 
-    /// The estimate of the light that arrives at what `pixel` shows, from the lights of its list: what a
-    /// shader does next.
-    pub fn radiance(
-        &self,
-        camera: &Camera,
-        depth_buffer: &[f32],
-        pixel: [u32; 2],
-        frame: u32,
-    ) -> f32 {
+    /// The estimate of the light that arrives at what each pixel shows, from the lights of its list: what a
+    /// shader does next. Row by row, zero for sky.
+    pub fn shade(&mut self, camera: &Camera, depth_buffer: &[f32]) -> &[f32] {
+        let Self { size, tiles, .. } = self;
+        let estimator = RadianceEstimator::new(&self.roulette);
+        self.radiance.fill(0.0);
+        for (tile, interval) in self.grid.tiles().flat_map(|tile| [(tile, 0), (tile, 1)]) {
+            let list = self.lists.of(tile, interval);
+            if list.is_empty() {
+                continue;
+            }
+            let mut pixels = self.grid.pixels(tile).pixels().filter_map(|pixel| {
+                let index = (pixel[1] * size[0] + pixel[0]) as usize;
+                let depth = camera.depth(depth_buffer[index]);
+                let point = camera.point_in_pixel(*size, pixel, depth);
+                let is_here = tiles.interval_of(tile, depth) == Some(interval);
+                is_here.then(|| (index, camera.to_world_space(point)))
+            });
+            loop {
+                let mut indices = [0; PointBlock::LEN];
+                let mut points = pixels
+                    .by_ref()
+                    .zip(&mut indices)
+                    .map(|((i, point), index)| {
+                        *index = i;
+                        point.into()
+                    });
+                let Some(points) = PointBlock::take(&mut points) else {
+                    break;
+                };
+                let mut sums = [0.0; PointBlock::LEN];
+                estimator.at_block(&self.shading, list, &points, |estimates| {
+                    for (sum, radiance) in sums.iter_mut().zip(estimates.radiance) {
+                        *sum += radiance;
+                    }
+                });
+                for (index, sum) in indices.iter().zip(sums).take(points.len()) {
+                    self.radiance[*index] = sum;
+                }
+            }
+        }
+        &self.radiance
+    }
+
+    /// The same for a single pixel.
+    pub fn radiance(&self, camera: &Camera, depth_buffer: &[f32], pixel: [u32; 2]) -> f32 {
         let depth = camera.depth(depth_buffer[(pixel[1] * self.size[0] + pixel[0]) as usize]);
         let tile = self.grid.tile_of(pixel);
         let Some(interval) = self.tiles.interval_of(tile, depth) else {
             return 0.0; // sky
         };
         let point = camera.to_world_space(camera.point_in_pixel(self.size, pixel, depth));
-        let from = |index: &u32| {
-            let (light, _) = &self.lights[*index as usize];
-            let way = point - light.position();
-            let intensity = light.radiant_intensity(way.normalize());
-            let distance_squared = way.length_squared();
-            self.roulette
-                .estimate(intensity, distance_squared, xi(*index, frame))
-        };
-        // From 0, since the sum of no numbers is −0.
         let list = self.lists.of(tile, interval);
-        list.iter().map(from).fold(0.0, |sum, more| sum + more)
+        RadianceEstimator::new(&self.roulette).fold_at_points(
+            &self.shading,
+            [(point.into(), list)],
+            0.0,
+            |sum, _, estimate| sum + estimate.radiance,
+        )
     }
 
     /// Lights that reach anything at all in this frame.

@@ -1,5 +1,5 @@
-//! The light culling of a frame loop, as an engine has it: lights that do not move, a camera that does,
-//! and no allocation after the first frame.
+//! Light culling and shading in a frame loop, as an engine has them: lights that do not move, a camera that
+//! does, and no allocation after the first frame.
 //!
 //! ```text
 //! cargo run --release --example engine -- --help
@@ -65,20 +65,23 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let mut pass = LightPass::new(lights, arguments.delta, &camera, SIZE, TILE_SIZE)?;
 
     say(format_args!(
-        "frame  in reach  lights/tile  most  tile tests  block tests  empty  radiance      ms"
+        "frame  in reach  lights/tile  most  tile tests  block tests  empty  radiance  cull ms  shade ms"
     ));
     for frame in 0..arguments.frames {
         let camera = world.camera(frame)?;
         let depth_buffer = world.draw_depths(&camera);
         let start = Instant::now();
         let counters = pass.cull(&camera, depth_buffer, frame)?;
-        let milliseconds = start.elapsed().as_secs_f64() * 1e3;
+        let cull_ms = start.elapsed().as_secs_f64() * 1e3;
+        let start = Instant::now();
+        pass.shade(&camera, depth_buffer);
+        let shade_ms = start.elapsed().as_secs_f64() * 1e3;
+        let radiance = pass.radiance(&camera, depth_buffer, WATCHED_PIXEL);
 
-        let radiance = pass.radiance(&camera, depth_buffer, WATCHED_PIXEL, frame);
         let lengths = pass.list_lengths();
         let (tiles, most) = (lengths.clone().count(), lengths.max().unwrap_or(0));
         let is_read = say(format_args!(
-            "{frame:>5}  {:>8}  {:>11.1}  {most:>4}  {:>10}  {:>11}  {:>5}  {radiance:>8.4}  {milliseconds:>6.2}",
+            "{frame:>5}  {:>8}  {:>11.1}  {most:>4}  {:>10}  {:>11}  {:>5}  {radiance:>8.4}  {cull_ms:>7.2}  {shade_ms:>8.2}",
             pass.lights_in_reach(),
             counters.pairs as f64 / tiles as f64,
             counters.tile_tests,

@@ -83,6 +83,7 @@ fn render(arguments: &Arguments) -> Result<(), String> {
     let (images, denoise_ms) = timed(|| denoised(arguments, &frame, &glossy, &diffuse));
     steps.push(("denoise".into(), denoise_ms));
     let (reference, reference_ms) = timed(|| reference(arguments, &frame, &lights));
+    let reference = reference.map_err(said)?;
     if reference.is_some() {
         steps.push(("reference".into(), reference_ms));
     }
@@ -166,7 +167,11 @@ fn denoised(
 }
 
 /// The reference of the kind asked for, or of that which can be afforded.
-fn reference(arguments: &Arguments, frame: &Frame, lights: &Lights) -> Option<Reference> {
+fn reference(
+    arguments: &Arguments,
+    frame: &Frame,
+    lights: &Lights,
+) -> Result<Option<Reference>, Error> {
     /// How many lights at how many pixels: half a minute on two cores.
     const BUDGET: f64 = 6e9;
     let all_lights = (lights.glossy.len() + lights.diffuse.len()) as f64;
@@ -177,7 +182,7 @@ fn reference(arguments: &Arguments, frame: &Frame, lights: &Lights) -> Option<Re
         ReferenceKind::Sampled
     });
     let stride = match kind {
-        ReferenceKind::Off => return None,
+        ReferenceKind::Off => return Ok(None),
         ReferenceKind::Full => 1,
         ReferenceKind::Sampled => {
             sampling_stride((8.0 * work / BUDGET).sqrt(), arguments.interleave)
@@ -186,7 +191,7 @@ fn reference(arguments: &Arguments, frame: &Frame, lights: &Lights) -> Option<Re
     let bar = progress("reference", Reference::pixels(frame, stride).len());
     let reference = Reference::new(frame, lights, stride, || bar.inc(1));
     bar.finish_and_clear();
-    Some(reference)
+    reference.map(Some)
 }
 
 /// The least stride from `least` that meets pixels of all subregions alike.

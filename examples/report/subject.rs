@@ -167,7 +167,8 @@ impl<'a> Subject<'a> {
                 diffuse: Vec::new(),
                 ..self.lights(gloss, vpls, &whole, seed)
             };
-            let one = Reference::new(&frame, &lights, self.stride(), || ()).glossy;
+            let one = Reference::new(&frame, &lights, self.stride(), || ());
+            let one = one.expect("its roulette is in range").glossy;
             brightness.push(self.brightness(&pixels, &one));
             for (sum, one) in irradiance.iter_mut().zip(one) {
                 *sum += one / sets as f32;

@@ -58,17 +58,20 @@ impl LightLists {
 
     /// The indices of the lights that may touch `tile` = \[column, row\] in its `interval`-th depth interval,
     /// in the order of the batch. Empty for a tile or an interval that does not exist.
+    #[inline]
     #[must_use]
     pub fn of(&self, tile: [u32; 2], interval: u32) -> &[u32] {
         let ([x, y], interval) = (tile.map(|n| n as usize), interval as usize);
         if x >= self.columns || interval >= self.intervals {
             return &[];
         }
-        // Checked first, since the computation of the slot can overflow.
-        if y >= self.ranges.len() / (self.columns * self.intervals) {
-            return &[];
-        }
-        let [start, end] = self.ranges[self.slot([x, y]) + interval].map(|n| n as usize);
+        // Of a row that does not exist the slot may overflow. There is none at the largest number either.
+        let slot = y.saturating_mul(self.columns).saturating_add(x);
+        let slot = slot.saturating_mul(self.intervals).saturating_add(interval);
+        let [start, end] = self
+            .ranges
+            .get(slot)
+            .map_or([0; 2], |range| range.map(|n| n as usize));
         &self.lights[start..end]
     }
 

@@ -11,6 +11,7 @@
 //!    against its parts. For each depth interval of each tile, `tile_list` appends the indices of the lights
 //!    that may touch it to [`LightLists`]. `exact` does the same with the exact test after that.
 //! 4. `parallel` gives blocks to threads and concatenates their lists.
+//! 5. `shading` evaluates the lights of a list at the points of its tile.
 //!
 //! # Layout
 //!
@@ -43,6 +44,7 @@ mod lanes;
 mod lists;
 #[cfg(feature = "rayon")]
 mod parallel;
+mod shading;
 mod tile_depths;
 mod tile_list;
 
@@ -51,4 +53,7 @@ pub use builder::BatchBuilder;
 pub use culler::{CullCounters, Culler};
 pub use depth_order::DepthOrder;
 pub use lists::LightLists;
+pub use shading::{
+    BlockEstimates, Estimate, PointBlock, RadianceEstimator, ShadedPoint, ShadingBatch,
+};
 pub use tile_depths::TileDepths;

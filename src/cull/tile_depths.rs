@@ -195,6 +195,7 @@ impl TileDepths {
     /// # Panics
     ///
     /// If `tile` is outside the grid.
+    #[inline]
     #[track_caller]
     #[must_use]
     pub fn interval_of(&self, tile: [u32; 2], depth: f32) -> Option<u32> {

@@ -8,4 +8,6 @@ mod xi;
 pub use curve::rank_along_curve;
 pub use roulette::Roulette;
 pub use vpl::Vpl;
+#[cfg(feature = "cull")]
+pub(crate) use vpl::unit;
 pub use xi::{FrameSeed, Seed, Xi};

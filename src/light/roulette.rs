@@ -1,6 +1,6 @@
 use super::Xi;
 use crate::base::{Error, number_in};
-use crate::num::{Single, sqrt};
+use crate::num::{Real, Single, sqrt};
 
 /// Russian roulette with the variance parameter δ.
 ///
@@ -108,7 +108,18 @@ impl Roulette {
     #[inline]
     #[must_use]
     pub fn accepts(&self, intensity: f32, distance_squared: f32, xi: Xi) -> bool {
-        intensity > 0.0 && intensity >= xi.get() * (self.delta * distance_squared)
+        self.accepts_in_lanes(intensity, distance_squared, xi.get())
+    }
+
+    #[inline(always)]
+    pub(crate) fn accepts_in_lanes<N: Single>(
+        &self,
+        intensity: N,
+        distance_squared: N,
+        xi: N,
+    ) -> N::Mask {
+        let least = xi * (distance_squared * self.delta);
+        intensity.is_positive() & least.le(intensity)
     }
 
     /// The estimate of the radiance: L/p of an accepted light, 0 of any other
@@ -119,10 +130,16 @@ impl Roulette {
     #[must_use]
     pub fn estimate(&self, intensity: f32, distance_squared: f32, xi: Xi) -> f32 {
         if self.accepts(intensity, distance_squared, xi) {
-            (intensity / distance_squared).max(self.delta)
+            self.accepted_radiance(intensity, distance_squared)
         } else {
             0.0
         }
+    }
+
+    /// The estimate max(L, δ) of the radiance of a light that is accepted.
+    #[inline(always)]
+    pub(crate) fn accepted_radiance<N: Single>(&self, intensity: N, distance_squared: N) -> N {
+        Real::max(intensity / distance_squared, intensity.splat(self.delta))
     }
 
     /// The weight 1/p of an accepted light, 0 of any other: the factor of each channel of a coloured

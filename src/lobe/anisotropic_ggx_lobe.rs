@@ -1,9 +1,11 @@
 use glam::Vec3;
 
 use super::anisotropic_ggx::{anisotropic_masking_root, anisotropic_ndf};
-use super::ggx_lobe::GgxLobes;
-use super::{AnisotropicGgx, Fresnel, GgxLobe, HeightCorrelated, Incidence, Lobe};
-use super::{MaskingShadowing, NoFresnel, Separable};
+use super::ggx_lobe::{GgxLobes, reflectance};
+use super::{
+    AnisotropicGgx, FIRST_NUMBERS, Fresnel, GgxLobe, HeightCorrelated, Incidence, Lobe,
+    LobeNumbers, MaskingShadowing, NoFresnel, Separable,
+};
 use crate::base::{Direction, Error};
 use crate::num::{Matrix3, Real, Single, Vector3};
 
@@ -215,11 +217,12 @@ impl<F: Fresnel, G: MaskingShadowing> AnisotropicGgxLobe<F, G> {
 impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
     #[inline]
     fn value(&self, outgoing: Vec3) -> f32 {
-        anisotropic_value::<f32, F, G>(
+        anisotropic_value::<f32, G>(
             &self.at_any_azimuth.lanes(),
             self.ggx.roughness(),
             self.to_surface_frame(),
-            &[*self.fresnel()],
+            #[inline(always)]
+            |cosine| self.fresnel().reflectance(cosine),
             outgoing.into(),
         )
     }
@@ -232,20 +235,70 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
     fn is_empty(&self) -> bool {
         self.at_any_azimuth.is_empty()
     }
+
+    #[inline]
+    fn numbers(&self) -> LobeNumbers<f32> {
+        let [along, across] = self.ggx.roughness();
+        let [t, b] = self.tangent_axes;
+        let mut numbers = [0.0; FIRST_NUMBERS + 16];
+        let (first, rest) = numbers.split_at_mut(FIRST_NUMBERS);
+        first.copy_from_slice(&self.at_any_azimuth.numbers_with_roughness(along));
+        rest[..7].copy_from_slice(&[across, t.x, t.y, t.z, b.x, b.y, b.z]);
+        numbers
+    }
+
+    fn numbers_in_use() -> usize {
+        FIRST_NUMBERS + 7
+    }
+
+    fn has_more_than_numbers() -> bool {
+        GgxLobe::<F, G>::has_more_than_numbers()
+    }
+
+    #[inline(always)]
+    fn horizon_in_lanes<N: Single>(numbers: &LobeNumbers<N>) -> Option<Vector3<N>> {
+        GgxLobe::<F, G>::horizon_in_lanes(numbers)
+    }
+
+    #[inline(always)]
+    fn value_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        lobe_of: impl Fn(usize) -> Option<&'a Self>,
+        outgoing: Vector3<N>,
+    ) -> N {
+        let (lobes, parameters) = GgxLobes::from_numbers(numbers);
+        let (_, rest) = numbers.split_at(FIRST_NUMBERS);
+        let world = Matrix3::new(
+            Vector3::new(rest[1], rest[2], rest[3]),
+            Vector3::new(rest[4], rest[5], rest[6]),
+            lobes.normal,
+        );
+        anisotropic_value::<N, G>(
+            &lobes,
+            [lobes.roughness, rest[0]],
+            world.transpose(),
+            #[inline(always)]
+            |cosine| {
+                let fresnel_of = |i| lobe_of(i).map(|lobe| *lobe.fresnel());
+                reflectance(parameters, fresnel_of, cosine)
+            },
+            outgoing,
+        )
+    }
 }
 
 /// f·max(μ_o, 0) towards `outgoing`, for the parts of a lobe. `to_surface_frame` is the rotation from world
-/// space to (tangent, bitangent, n).
+/// space to (tangent, bitangent, n), and `reflectance` is F as a function of cosθ_h.
 #[inline(always)]
-pub(super) fn anisotropic_value<N: Single, F: Fresnel, G: MaskingShadowing>(
+pub(super) fn anisotropic_value<N: Single, G: MaskingShadowing>(
     at_any_azimuth: &GgxLobes<N>,
     roughness: [N; 2],
     to_surface_frame: Matrix3<N>,
-    fresnels: &[F],
+    reflectance: impl FnOnce(N) -> N,
     outgoing: Vector3<N>,
 ) -> N {
-    at_any_azimuth.value_with::<F, G>(
-        fresnels,
+    at_any_azimuth.value_with::<G>(
+        reflectance,
         outgoing,
         #[inline(always)]
         |half_vector| anisotropic_ndf(roughness, to_surface_frame * half_vector),

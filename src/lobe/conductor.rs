@@ -77,6 +77,16 @@ impl Fresnel for Conductor {
         );
         reflectance(index, extinction, half_angle_cosine)
     }
+
+    #[inline]
+    fn parameters(&self) -> [f32; 2] {
+        [self.index, self.extinction]
+    }
+
+    #[inline(always)]
+    fn reflectance_of_parameters<N: Single>([index, extinction]: [N; 2], cosine: N) -> Option<N> {
+        Some(reflectance(index, extinction, cosine))
+    }
 }
 
 #[inline(always)]

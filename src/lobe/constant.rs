@@ -2,7 +2,8 @@ use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
-use super::Lobe;
+use super::{Lobe, LobeNumbers};
+use crate::num::{Single, Vector3};
 
 /// A lobe with the same value 1/(4π) sr⁻¹ in every direction: the ordinary point light of engines
 /// [Tokuyoshi & Harada 2016]. Its radiant intensity is its flux over 4π.
@@ -29,5 +30,18 @@ impl Lobe for ConstantLobe {
     #[inline]
     fn value(&self, _outgoing: Vec3) -> f32 {
         Self::VALUE
+    }
+
+    fn has_more_than_numbers() -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn value_in_lanes<'a, N: Single>(
+        _: &LobeNumbers<N>,
+        _: impl Fn(usize) -> Option<&'a Self>,
+        outgoing: Vector3<N>,
+    ) -> N {
+        outgoing.x.splat(Self::VALUE)
     }
 }

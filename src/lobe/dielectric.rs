@@ -67,6 +67,16 @@ impl Fresnel for Dielectric {
         );
         reflectance(index, half_angle_cosine)
     }
+
+    #[inline]
+    fn parameters(&self) -> [f32; 2] {
+        [self.relative_index, 0.0]
+    }
+
+    #[inline(always)]
+    fn reflectance_of_parameters<N: Single>([index, _]: [N; 2], cosine: N) -> Option<N> {
+        Some(reflectance(index, cosine))
+    }
 }
 
 #[inline(always)]

@@ -83,6 +83,20 @@ pub trait Fresnel: Copy + 'static {
         )
     }
 
+    /// The numbers that [`reflectance_of_parameters`](Self::reflectance_of_parameters) takes.
+    #[doc(hidden)]
+    fn parameters(&self) -> [f32; 2] {
+        [0.0; 2]
+    }
+
+    /// Computes the [`reflectance`](Self::reflectance) of one factor in each lane from its
+    /// [`parameters`](Self::parameters). `None` if it cannot be computed in lanes.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn reflectance_of_parameters<N: Single>(_: [N; 2], _half_angle_cosine: N) -> Option<N> {
+        None
+    }
+
     /// Computes the [`maximum`](Self::maximum) of one factor in each lane.
     #[doc(hidden)]
     #[inline(always)]
@@ -194,6 +208,11 @@ impl Fresnel for NoFresnel {
     }
 
     #[inline(always)]
+    fn reflectance_of_parameters<N: Single>(_: [N; 2], half_angle_cosine: N) -> Option<N> {
+        Some(half_angle_cosine.splat(1.0))
+    }
+
+    #[inline(always)]
     fn maximum_in_lanes<N: Single>(_: &[Self], smallest_cosine: N) -> N {
         smallest_cosine.splat(1.0)
     }
@@ -245,7 +264,17 @@ impl Fresnel for Schlick {
             #[inline(always)]
             |i| fresnels[i].f0,
         );
-        f0 + f0.one_minus() * half_angle_cosine.one_minus().fifth_power()
+        schlick(f0, half_angle_cosine)
+    }
+
+    #[inline]
+    fn parameters(&self) -> [f32; 2] {
+        [self.f0, 0.0]
+    }
+
+    #[inline(always)]
+    fn reflectance_of_parameters<N: Single>([f0, _]: [N; 2], cosine: N) -> Option<N> {
+        Some(schlick(f0, cosine))
     }
 
     #[inline]
@@ -255,4 +284,10 @@ impl Fresnel for Schlick {
             rise: round_up(1.0 - self.f0, SCHLICK_RISE_ROUNDINGS),
         }
     }
+}
+
+/// F0 + (1 − F0)(1 − cosθ_h)⁵
+#[inline(always)]
+fn schlick<N: Single>(f0: N, half_angle_cosine: N) -> N {
+    f0 + f0.one_minus() * half_angle_cosine.one_minus().fifth_power()
 }

@@ -5,7 +5,8 @@ use glam::{Mat3, Vec3};
 use super::fresnel::LEAST_REFLECTED;
 use super::ggx::{masking_root, ndf_at};
 use super::{
-    Fresnel, Ggx, HeightCorrelated, Incidence, Lobe, MaskingShadowing, NoFresnel, Separable,
+    Fresnel, Ggx, HeightCorrelated, Incidence, Lobe, LobeNumbers, MaskingShadowing, NoFresnel,
+    Separable, padded,
 };
 use crate::base::{Direction, mirrored};
 use crate::num::{Quad, Real, Single, UNIT_ROUNDOFF, Vector3, exact_dot};
@@ -182,6 +183,17 @@ impl<F: Fresnel, G> GgxLobe<F, G> {
         ]
     }
 
+    /// The numbers that [`GgxLobes::from_numbers`] takes, with this roughness.
+    #[inline]
+    pub(super) fn numbers_with_roughness(&self, roughness: f32) -> [f32; 11] {
+        let (n, w) = (self.normal, self.incoming);
+        let (cosine, root) = (self.incident_cosine, self.incident_root);
+        let [first, second] = self.fresnel.parameters();
+        [
+            n.x, n.y, n.z, cosine, w.x, w.y, w.z, root, roughness, first, second,
+        ]
+    }
+
     /// The lobe as a single lane.
     #[inline(always)]
     pub(crate) fn lanes(&self) -> GgxLobes<f32> {
@@ -207,7 +219,11 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
 impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
     #[inline]
     fn value(&self, outgoing: Vec3) -> f32 {
-        self.lanes().value::<F, G>(&[self.fresnel], outgoing.into())
+        self.lanes().value::<G>(
+            #[inline(always)]
+            |cosine| self.fresnel.reflectance(cosine),
+            outgoing.into(),
+        )
     }
 
     fn horizon_normal(&self) -> Option<Direction> {
@@ -218,6 +234,62 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
     fn is_empty(&self) -> bool {
         self.incident_cosine <= 0.0
     }
+
+    #[inline]
+    fn numbers(&self) -> LobeNumbers<f32> {
+        padded(self.numbers_with_roughness(self.ggx.roughness()))
+    }
+
+    fn numbers_in_use() -> usize {
+        11
+    }
+
+    fn has_more_than_numbers() -> bool {
+        F::reflectance_of_parameters([0.0; 2], 1.0).is_none()
+    }
+
+    #[inline(always)]
+    fn horizon_in_lanes<N: Single>(numbers: &LobeNumbers<N>) -> Option<Vector3<N>> {
+        let [x, y, z, ..] = *numbers;
+        Some(Vector3::new(x, y, z))
+    }
+
+    #[inline(always)]
+    fn value_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        lobe_of: impl Fn(usize) -> Option<&'a Self>,
+        outgoing: Vector3<N>,
+    ) -> N {
+        let (lobes, parameters) = GgxLobes::from_numbers(numbers);
+        lobes.value::<G>(
+            #[inline(always)]
+            |cosine| {
+                let fresnel_of = |i| lobe_of(i).map(|lobe| lobe.fresnel);
+                reflectance(parameters, fresnel_of, cosine)
+            },
+            outgoing,
+        )
+    }
+}
+
+/// The reflectance of the Fresnel factor in each lane: computed in lanes if that is possible, and else by the
+/// factor that `fresnel_of` gives for a lane.
+#[inline(always)]
+pub(super) fn reflectance<N: Single, F: Fresnel>(
+    parameters: [N; 2],
+    fresnel_of: impl Fn(usize) -> Option<F>,
+    cosine: N,
+) -> N {
+    F::reflectance_of_parameters(parameters, cosine).unwrap_or_else(
+        #[inline(always)]
+        || {
+            N::per_lane(
+                [cosine],
+                #[inline(always)]
+                |i, [cosine]| fresnel_of(i).map_or(0.0, |fresnel| fresnel.reflectance(cosine)),
+            )
+        },
+    )
 }
 
 /// A [`GgxLobe`] in each lane, without its Fresnel factor and its masking function.
@@ -259,6 +331,33 @@ impl<N: Single> GgxLobes<N> {
             incident_root: root,
             roughness,
         }
+    }
+
+    /// The lobes, and the parameters of their Fresnel factors.
+    #[inline(always)]
+    pub fn from_numbers(numbers: &LobeNumbers<N>) -> (Self, [N; 2]) {
+        let [
+            n_x,
+            n_y,
+            n_z,
+            cosine,
+            w_x,
+            w_y,
+            w_z,
+            root,
+            roughness,
+            first,
+            second,
+            ..,
+        ] = *numbers;
+        let lobes = Self {
+            normal: Vector3::new(n_x, n_y, n_z),
+            incoming: Vector3::new(w_x, w_y, w_z),
+            incident_cosine: cosine,
+            incident_root: root,
+            roughness,
+        };
+        (lobes, [first, second])
     }
 
     /// ω_u
@@ -360,15 +459,15 @@ impl<N: Single> GgxLobes<N> {
         N::select(rises, joint, most)
     }
 
-    /// f·max(μ_o, 0) towards `outgoing`.
+    /// f·max(μ_o, 0) towards `outgoing`, where `reflectance` is F as a function of cosθ_h.
     #[inline(always)]
-    pub fn value<F: Fresnel, G: MaskingShadowing>(
+    pub fn value<G: MaskingShadowing>(
         &self,
-        fresnels: &[F],
+        reflectance: impl FnOnce(N) -> N,
         outgoing: Vector3<N>,
     ) -> N {
-        self.value_with::<F, G>(
-            fresnels,
+        self.value_with::<G>(
+            reflectance,
             outgoing,
             #[inline(always)]
             |half_vector| ndf_at(self.roughness, half_vector, self.normal),
@@ -379,9 +478,9 @@ impl<N: Single> GgxLobes<N> {
 
     /// The value with another NDF, a function of the half vector, and another root, a function of μ_o.
     #[inline(always)]
-    pub(super) fn value_with<F: Fresnel, G: MaskingShadowing>(
+    pub(super) fn value_with<G: MaskingShadowing>(
         &self,
-        fresnels: &[F],
+        reflectance: impl FnOnce(N) -> N,
         outgoing: Vector3<N>,
         ndf: impl FnOnce(Vector3<N>) -> N,
         masking_root: impl FnOnce(N) -> N,
@@ -395,7 +494,7 @@ impl<N: Single> GgxLobes<N> {
         let half_vector = self.incoming + outgoing;
         // ω_i·ω_h = ½‖ω_i + ω_o‖.
         let half_angle_cosine = (half_vector.length() * 0.5).min(zero.splat(1.0));
-        let value = F::reflectance_in_lanes(fresnels, half_angle_cosine)
+        let value = reflectance(half_angle_cosine)
             * ndf(half_vector)
             * G::over_four_incident_cosines_in_lanes(
                 self.incident_cosine,

@@ -2,7 +2,7 @@ use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
-use super::Lobe;
+use super::{Lobe, LobeNumbers, padded};
 use crate::base::{Direction, Error, number_in};
 use crate::num::{Single, Vector3, sqrt};
 
@@ -71,6 +71,36 @@ impl Lobe for LambertLobe {
 
     fn horizon_normal(&self) -> Option<Direction> {
         Some(self.normal)
+    }
+
+    #[inline]
+    fn numbers(&self) -> LobeNumbers<f32> {
+        let n = self.normal;
+        padded([n.x, n.y, n.z, self.albedo])
+    }
+
+    fn numbers_in_use() -> usize {
+        4
+    }
+
+    fn has_more_than_numbers() -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn horizon_in_lanes<N: Single>(numbers: &LobeNumbers<N>) -> Option<Vector3<N>> {
+        let [x, y, z, ..] = *numbers;
+        Some(Vector3::new(x, y, z))
+    }
+
+    #[inline(always)]
+    fn value_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        _: impl Fn(usize) -> Option<&'a Self>,
+        outgoing: Vector3<N>,
+    ) -> N {
+        let [x, y, z, albedo, ..] = *numbers;
+        lambert(albedo, Vector3::new(x, y, z), outgoing)
     }
 }
 

@@ -153,7 +153,10 @@ impl<F: Fresnel, G: MaskingShadowing> InLanes<GgxLobe<F, G>> for OfGgx {
         outgoing: Vector3<F32Lanes<S>>,
     ) -> F32Lanes<S> {
         let fresnels: [F; MAX_LANES] = lobes.map(|lobe| *lobe.fresnel());
-        ggx_lobes(simd, |i| lobes[i], start).value::<F, G>(&fresnels[start..], outgoing)
+        ggx_lobes(simd, |i| lobes[i], start).value::<G>(
+            |cosine| F::reflectance_in_lanes(&fresnels[start..], cosine),
+            outgoing,
+        )
     }
 }
 
@@ -191,14 +194,14 @@ impl<F: Fresnel> InLanes<AnisotropicGgxLobe<F>> for OfAnisotropicGgx {
         let axis = |axis: fn(Matrix3<f32>) -> Vector3<f32>| {
             gathered_vector(simd, start, |i| axis(lobes[i].to_surface_frame()).into())
         };
-        anisotropic_value::<_, F, HeightCorrelated>(
+        anisotropic_value::<_, HeightCorrelated>(
             &ggx_lobes(simd, |i| *lobes[i].at_any_azimuth(), start),
             [
                 gathered(simd, start, |i| lobes[i].ggx().roughness()[0]),
                 gathered(simd, start, |i| lobes[i].ggx().roughness()[1]),
             ],
             Matrix3::new(axis(|m| m.x), axis(|m| m.y), axis(|m| m.z)),
-            &fresnels[start..],
+            |cosine| F::reflectance_in_lanes(&fresnels[start..], cosine),
             outgoing,
         )
     }

@@ -33,6 +33,26 @@ pub use phong::PhongLobe;
 use glam::Vec3;
 
 use crate::base::Direction;
+use crate::num::{Single, Vector3};
+
+/// The numbers of a lobe that a batch of lights stores beside position, flux and ξ.
+///
+/// The first [`FIRST_NUMBERS`] share a cache line of 64 bytes with these five. What a lobe has besides comes
+/// in the next one.
+pub type LobeNumbers<N> = [N; FIRST_NUMBERS + 16];
+
+/// The lobe's numbers in the first cache line of a light.
+pub(crate) const FIRST_NUMBERS: usize = 11;
+
+/// `numbers`, followed by zeros.
+#[inline(always)]
+fn padded<const K: usize>(numbers: [f32; K]) -> LobeNumbers<f32> {
+    let mut padded = [0.0; FIRST_NUMBERS + 16];
+    for (padded, number) in padded.iter_mut().zip(numbers) {
+        *padded = number;
+    }
+    padded
+}
 
 /// The light that a point reflects, as a function of the outgoing direction. The incoming direction is fixed.
 ///
@@ -53,5 +73,61 @@ pub trait Lobe {
     /// their bounds.
     fn is_empty(&self) -> bool {
         false
+    }
+
+    /// The numbers that [`value_in_lanes`](Self::value_in_lanes) reads.
+    #[doc(hidden)]
+    fn numbers(&self) -> LobeNumbers<f32> {
+        padded([])
+    }
+
+    /// How many of the [`numbers`](Self::numbers) are in use.
+    #[doc(hidden)]
+    #[must_use]
+    fn numbers_in_use() -> usize
+    where
+        Self: Sized,
+    {
+        0
+    }
+
+    /// Whether [`value_in_lanes`](Self::value_in_lanes) reads more of a lobe than its numbers.
+    #[doc(hidden)]
+    #[must_use]
+    fn has_more_than_numbers() -> bool
+    where
+        Self: Sized,
+    {
+        true
+    }
+
+    /// The normals at or below whose horizon [`value_in_lanes`](Self::value_in_lanes) is zero: where the dot
+    /// product with the direction, as it rounds, is not positive. `None` if there is no such normal.
+    #[doc(hidden)]
+    #[must_use]
+    #[inline(always)]
+    fn horizon_in_lanes<N: Single>(_: &LobeNumbers<N>) -> Option<Vector3<N>>
+    where
+        Self: Sized,
+    {
+        None
+    }
+
+    /// Computes the [`value`](Self::value) of one lobe in each lane. `lobe_of` gives that of a lane.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn value_in_lanes<'a, N: Single>(
+        _: &LobeNumbers<N>,
+        lobe_of: impl Fn(usize) -> Option<&'a Self>,
+        outgoing: Vector3<N>,
+    ) -> N
+    where
+        Self: Sized + 'a,
+    {
+        N::per_lane(
+            [outgoing.x, outgoing.y, outgoing.z],
+            #[inline(always)]
+            |i, outgoing| lobe_of(i).map_or(0.0, |lobe| lobe.value(Vec3::from_array(outgoing))),
+        )
     }
 }

@@ -2,7 +2,7 @@ use core::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::{Incidence, Lobe};
+use super::{Incidence, Lobe, LobeNumbers, padded};
 use crate::base::{Direction, Error, number_in};
 use crate::num::{self, Real, Single, Vector3, exact_dot};
 
@@ -143,6 +143,47 @@ impl Lobe for PhongLobe {
 
     fn is_empty(&self) -> bool {
         !self.is_lit || self.albedo <= 0.0
+    }
+
+    #[inline]
+    fn numbers(&self) -> LobeNumbers<f32> {
+        let PhongLobes {
+            normal: n,
+            axis: u,
+            exponent,
+            albedo,
+        } = self.lanes();
+        padded([n.x, n.y, n.z, u.x, u.y, u.z, exponent, albedo])
+    }
+
+    fn numbers_in_use() -> usize {
+        8
+    }
+
+    fn has_more_than_numbers() -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn horizon_in_lanes<N: Single>(numbers: &LobeNumbers<N>) -> Option<Vector3<N>> {
+        let [x, y, z, ..] = *numbers;
+        Some(Vector3::new(x, y, z))
+    }
+
+    #[inline(always)]
+    fn value_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        _: impl Fn(usize) -> Option<&'a Self>,
+        outgoing: Vector3<N>,
+    ) -> N {
+        let [n_x, n_y, n_z, u_x, u_y, u_z, exponent, albedo, ..] = *numbers;
+        let lobes = PhongLobes {
+            normal: Vector3::new(n_x, n_y, n_z),
+            axis: Vector3::new(u_x, u_y, u_z),
+            exponent,
+            albedo,
+        };
+        lobes.value(outgoing)
     }
 }
 

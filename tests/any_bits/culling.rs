@@ -5,8 +5,9 @@ use std::fmt::Debug;
 
 use stochastic_light_culling::{
     BatchBuilder, Bounded, BoxTest, Camera, Culler, DepthInterval, DepthOrder, Direction,
-    Ellipsoid, Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, NoFresnel, Project,
-    Roulette, Seed, Sphere, TileDepths, TileGrid, TileRectangle, Vpl, Xi, glam::Mat3,
+    Ellipsoid, Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, Lobe, NoFresnel,
+    Project, RadianceEstimator, Roulette, Seed, ShadedPoint, ShadingBatch, Sphere, TileDepths,
+    TileGrid, TileRectangle, Vpl, Xi, glam::Mat3,
 };
 
 use crate::bits::Bits;
@@ -143,6 +144,7 @@ impl<'a> Grid<'a> {
         let given = given.map(|(number, light)| (number, light, xi));
         let mut batch = LightBatch::new();
         builder(bits, &roulette, self.camera).add(given, &mut batch);
+        estimates(bits, &roulette, xi, &lights);
         let shapes = lights.iter();
         let shapes = shapes.map(|light| light.bound(&roulette, xi).project(self.camera));
         self.lists(bits, &batch, shapes);
@@ -191,6 +193,31 @@ impl<'a> Grid<'a> {
             let _ = lists.of([bits.size(), bits.size()], bits.size());
         }
     }
+}
+
+/// Lights at points from bits, and at their own places, are accepted as by scalar functions.
+fn estimates<L: Lobe + Copy>(bits: &mut Bits, roulette: &Roulette, xi: Xi, lights: &[Vpl<L>]) {
+    let mut batch = ShadingBatch::new();
+    batch.extend(lights.iter().map(|light| (light, xi)));
+    let estimator = RadianceEstimator::new(roulette).with_lanes(bits.byte().into());
+    let list: Vec<u32> = (0..lights.len() as u32).collect();
+    let points = [bits.vector(), bits.vector()].into_iter().chain(PLACES);
+    let points: Vec<ShadedPoint> = points.map(Into::into).collect();
+    let mut found = Vec::new();
+    let lists = points.iter().map(|point| (*point, &list[..]));
+    estimator.at_points(&batch, lists, |_, estimate| {
+        found.push((estimate.light, estimate.radiance.to_bits()));
+    });
+    let scalar = |point: &ShadedPoint, light: u32| {
+        let vpl = &lights[light as usize];
+        let (direction, squared) = vpl.direction_to(point.position);
+        let radiance = roulette.estimate(vpl.radiant_intensity(direction), squared, xi);
+        (radiance > 0.0).then_some((light, radiance.to_bits()))
+    };
+    let expected = points
+        .iter()
+        .flat_map(|point| list.iter().filter_map(|light| scalar(point, *light)));
+    assert_eq!(found, expected.collect::<Vec<_>>());
 }
 
 fn roulette(bits: &mut Bits) -> Roulette {

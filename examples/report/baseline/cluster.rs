@@ -32,7 +32,7 @@ pub fn light(frame: &Frame, camera: &Camera, tiles: &Tiles, lights: &[GlossyLigh
         let place = tiles.place_of(pixel, depth)?;
         Some(clusters[place.subregion].of(place.tile, place.interval))
     };
-    shade(frame, false, lights, list_of, || ())
+    shade(frame, true, lights, list_of, || ())
 }
 
 /// The clusters of each subregion, whose `tiles` must be cut into [`SLICES`].

@@ -6,7 +6,7 @@ use stochastic_light_culling::{BoxTest, Camera, Error, LambertLobe, Lobe, Roulet
 
 use super::bounds::{self, BoundKind, GlossyLight};
 use super::cull::Cullers;
-use super::shade::shade_subregions;
+use super::shade::{Shading, count_facing};
 use super::{Frame, Light, Shaded, Tiles};
 
 /// What one bound costs and what comes of it.
@@ -64,7 +64,7 @@ pub fn measure_diffuse(
     )
 }
 
-fn measure<L: Lobe + Sync, T: BoxTest + Send + Sync>(
+fn measure<L: Lobe + Copy + Send + Sync, T: BoxTest + Send + Sync>(
     (frame, tilings, camera): (&Frame, &[Tiling], &Camera),
     lights: &[Light<L>],
     bound: BoundKind,
@@ -80,7 +80,8 @@ fn measure<L: Lobe + Sync, T: BoxTest + Send + Sync>(
         let group = (2 * rayon::current_num_threads()).min(count.div_ceil(2));
         let mut cullers = Cullers::new(group);
         let mut shaded = Shaded::black(frame.surfaces.surfaces.len());
-        let (mut cull_ms, mut shade_ms) = (0.0, 0.0);
+        let (shading, mut shade_ms) = timed(|| Shading::new(frame, lights));
+        let mut cull_ms = 0.0;
         for start in (0..count).step_by(group) {
             let end = (start + group).min(count);
             let mut cull = || cullers.cull(&subregions[start..end], &batches[start..end]);
@@ -93,11 +94,15 @@ fn measure<L: Lobe + Sync, T: BoxTest + Send + Sync>(
                 let place = tiling.tiles.place_of(pixel, depth)?;
                 Some(cullers.lists[place.subregion - start].of(place.tile, place.interval))
             };
-            let (group, refined) = (start as u32..end as u32, tiling.refined);
+            let group = start as u32..end as u32;
             let shade = || {
-                shade_subregions(frame, group, refined, lights, list_of, &mut shaded, &done);
+                let (group, by_list) = (group.clone(), !tiling.refined);
+                shading.shade_subregions(frame, group, by_list, list_of, &mut shaded, &done);
             };
             shade_ms += timed(shade).1;
+            if tiling.refined {
+                count_facing(frame, group, lights, list_of, &mut shaded);
+            }
         }
         Ok(Measured {
             bound,

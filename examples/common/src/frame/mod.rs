@@ -17,10 +17,8 @@ pub use lights::{Light, Lights, ordered, redraw};
 pub use measure::{Measured, Tiling, measure_diffuse, measure_glossy, timed};
 pub use metrics::{mean_over_surfaces, rmse};
 pub use reference::Reference;
-pub use shade::{Path, Shaded, Sums, shade, shade_subregions};
+pub use shade::{Path, Shaded, Shading, Sums, count_facing, shade};
 pub use tiles::{Slicing, Subregion, Tiles};
-
-use std::ops::Range;
 
 use stochastic_light_culling::{Interleave, Roulette};
 
@@ -39,17 +37,12 @@ pub struct Frame<'a> {
 impl Frame<'_> {
     /// The pixels of the image, as rows of its subregions.
     pub fn interleaved_rows(&self) -> Vec<Vec<[u32; 2]>> {
-        self.rows_of(0..self.interleave.subregions())
-    }
-
-    /// The pixels of some subregions, as rows of these.
-    pub fn rows_of(&self, subregions: Range<u32>) -> Vec<Vec<[u32; 2]>> {
         let interleave = &self.interleave;
         let rows = |subregion| {
             let [width, height] = interleave.subregion_size(subregion);
             let pixel = move |x, y| interleave.join_pixel(subregion, [x, y]);
             (0..height).map(move |y| (0..width).map(|x| pixel(x, y)).collect())
         };
-        subregions.flat_map(rows).collect()
+        (0..interleave.subregions()).flat_map(rows).collect()
     }
 }

@@ -1,9 +1,9 @@
 //! The irradiance of all lights, with none left to chance: what the frame is an estimate of.
 
 use rayon::prelude::*;
-use stochastic_light_culling::{Lobe, glam::Vec3};
+use stochastic_light_culling::{Error, Lobe, PointBlock, Roulette, ShadedPoint, glam::Vec3};
 
-use super::shade::Path;
+use super::shade::Shading;
 use super::{Frame, Light, Lights};
 
 /// The irradiance at some pixels, glossy and diffuse lights apart.
@@ -18,23 +18,31 @@ pub struct Reference {
 
 impl Reference {
     /// At every `stride`-th pixel across and down that is not sky; calls `done` after each.
-    pub fn new(frame: &Frame, lights: &Lights, stride: usize, done: impl Fn() + Sync) -> Self {
+    pub fn new(
+        frame: &Frame,
+        lights: &Lights,
+        stride: usize,
+        done: impl Fn() + Sync,
+    ) -> Result<Self, Error> {
         let pixels = Self::pixels(frame, stride);
+        let glossy = AllLights::new(frame, &lights.glossy)?;
+        let diffuse = AllLights::new(frame, &lights.diffuse)?;
         let both: Vec<[Vec3; 2]> = pixels
-            .par_iter()
-            .map(|pixel| {
-                let glossy = irradiance_of_all_lights(frame, &lights.glossy, *pixel);
-                let diffuse = irradiance_of_all_lights(frame, &lights.diffuse, *pixel);
-                done();
-                [glossy, diffuse]
+            .par_chunks(PointBlock::LEN)
+            .flat_map_iter(|pixels| {
+                let (glossy, diffuse) = (glossy.irradiance(pixels), diffuse.irradiance(pixels));
+                for _ in pixels {
+                    done();
+                }
+                glossy.zip(diffuse).map(Into::into)
             })
             .collect();
-        Self {
+        Ok(Self {
             stride,
             pixels,
             glossy: both.iter().map(|[glossy, _]| *glossy).collect(),
             diffuse: both.iter().map(|[_, diffuse]| *diffuse).collect(),
-        }
+        })
     }
 
     /// The irradiance of glossy and of diffuse lights for all of `count` pixels, black for sky; `None`
@@ -63,18 +71,39 @@ impl Reference {
     }
 }
 
-/// The irradiance at the `pixel`-th surface of the frame.
-fn irradiance_of_all_lights<L: Lobe>(frame: &Frame, lights: &[Light<L>], pixel: usize) -> Vec3 {
-    let surface = &frame.surfaces.surfaces[pixel];
-    let sum: Vec3 = lights
-        .iter()
-        // From behind the surface nothing arrives, whatever the lobe.
-        .filter(|light| (light.vpl.position() - surface.position).dot(surface.normal) > 0.0)
-        .map(|light| {
-            let path = Path::new(light, surface, frame.least_distance_squared);
-            path.irradiance() * light.tint
+/// All lights of one kind, each to be evaluated at all pixels.
+struct AllLights<'a, L> {
+    frame: &'a Frame<'a>,
+    shading: Shading<L>,
+    list: Vec<u32>,
+}
+
+impl<'a, L: Lobe + Copy> AllLights<'a, L> {
+    fn new(frame: &'a Frame, lights: &[Light<L>]) -> Result<Self, Error> {
+        // So small that what is not accepted, or more than it is, makes no difference.
+        let roulette = Roulette::new(1e-30)?;
+        Ok(Self {
+            frame,
+            shading: Shading::with_roulette(frame, &roulette, lights),
+            list: (0..lights.len() as u32).collect(),
         })
-        .sum();
-    // Each light is weighted for one subregion, and here lights them all.
-    sum / frame.interleave.weight()
+    }
+
+    /// The irradiance at up to sixteen surfaces of the frame.
+    fn irradiance(&self, pixels: &[usize]) -> impl Iterator<Item = Vec3> + use<L> {
+        let surfaces = pixels
+            .iter()
+            .map(|pixel| &self.frame.surfaces.surfaces[*pixel]);
+        let points = PointBlock::take(&mut surfaces.map(|surface| ShadedPoint {
+            position: surface.position,
+            normal: surface.normal,
+        }));
+        let irradiance = points.map_or([Vec3::ZERO; PointBlock::LEN], |points| {
+            (self.shading).irradiance(&self.list, &points, points.normals(), |_| ())
+        });
+        // Each light is weighted for one subregion, and here lights them all.
+        let weight = self.frame.interleave.weight();
+        let irradiance = irradiance.into_iter().take(pixels.len());
+        irradiance.map(move |irradiance| irradiance / weight)
+    }
 }

@@ -1,0 +1,203 @@
+//! Many points that share a list of lights.
+
+use fearless_simd::{Simd, SimdBase};
+use glam::Vec3;
+
+use super::batch::ShadingBatch;
+use super::kernel::{Frame, Lights, Points, evaluate};
+use super::point::{Estimate, ShadedPoint};
+use crate::cull::lanes::{LANES, Lanes, load, parts, store};
+use crate::lobe::Lobe;
+use crate::num::{F32Lanes, Vector3};
+
+/// Up to sixteen points, an array for each coordinate.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct PointBlock {
+    positions: [Lanes; 3],
+    normals: [Lanes; 3],
+    len: usize,
+}
+
+impl PointBlock {
+    /// The most points that a block holds.
+    pub const LEN: usize = LANES;
+
+    /// Takes the next [`LEN`](Self::LEN) points, or what is left of them. `None` if there are no more.
+    ///
+    /// ```
+    /// use stochastic_light_culling::{PointBlock, glam::Vec3};
+    ///
+    /// let mut points = (0..20).map(|x| Vec3::new(x as f32, 0.0, 0.0).into());
+    /// assert_eq!(PointBlock::take(&mut points).map(|block| block.len()), Some(16));
+    /// assert_eq!(PointBlock::take(&mut points).map(|block| block.len()), Some(4));
+    /// assert!(PointBlock::take(&mut points).is_none());
+    /// ```
+    #[inline]
+    pub fn take(points: &mut impl Iterator<Item = ShadedPoint>) -> Option<Self> {
+        let mut block = Self {
+            // At NaN nothing is accepted.
+            positions: [[f32::NAN; LANES]; 3],
+            normals: [[0.0; LANES]; 3],
+            len: 0,
+        };
+        for point in points.take(LANES) {
+            for i in 0..3 {
+                block.positions[i][block.len] = point.position[i];
+                block.normals[i][block.len] = point.normal[i];
+            }
+            block.len += 1;
+        }
+        (block.len > 0).then_some(block)
+    }
+
+    /// The number of points, at least 1.
+    #[expect(clippy::len_without_is_empty, reason = "it is never empty")]
+    #[inline]
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// The x, y and z of the normals. Zero past the last point.
+    #[inline]
+    #[must_use]
+    pub fn normals(&self) -> &[[f32; Self::LEN]; 3] {
+        &self.normals
+    }
+
+    #[inline(always)]
+    fn part<S: Simd>(&self, simd: S, part: usize) -> Points<F32Lanes<S>> {
+        Points {
+            position: load_vector(simd, &self.positions, part),
+            normal: load_vector(simd, &self.normals, part),
+        }
+    }
+}
+
+#[inline(always)]
+fn load_vector<S: Simd>(simd: S, [x, y, z]: &[Lanes; 3], part: usize) -> Vector3<F32Lanes<S>> {
+    Vector3::new(
+        load(simd, x, part),
+        load(simd, y, part),
+        load(simd, z, part),
+    )
+}
+
+/// The estimates of a light that a point of a block accepts, an array for each number.
+///
+/// Where the light is not accepted, numbers other than the radiance mean nothing. Past the last point they may
+/// be NaN.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+#[non_exhaustive]
+pub struct BlockEstimates {
+    /// The estimate of the radiance at each point; zero where the light is not accepted, and past the last
+    /// point.
+    pub radiance: [f32; PointBlock::LEN],
+    /// The radiant intensity towards each point.
+    pub intensity: [f32; PointBlock::LEN],
+    /// The squared distance of each point, or the least one of the estimator.
+    pub distance_squared: [f32; PointBlock::LEN],
+    /// The x, y and z of the direction from the light to each point.
+    pub direction: [[f32; PointBlock::LEN]; 3],
+    /// The index of the light.
+    pub light: u32,
+    /// Bit i is set if point i accepts the light.
+    pub accepted: u32,
+}
+
+impl BlockEstimates {
+    pub(super) const NONE: Self = Self {
+        radiance: [0.0; LANES],
+        intensity: [0.0; LANES],
+        distance_squared: [0.0; LANES],
+        direction: [[0.0; LANES]; 3],
+        light: 0,
+        accepted: 0,
+    };
+
+    /// The points that accept the light, by their places in the block, each with its estimate.
+    #[inline]
+    pub fn iter(&self) -> impl Iterator<Item = (usize, Estimate)> {
+        (0..LANES)
+            .filter(|i| self.accepted >> i & 1 != 0)
+            .map(|i| (i, self.estimate(i)))
+    }
+
+    #[inline(always)]
+    pub(super) fn estimate(&self, i: usize) -> Estimate {
+        let [x, y, z] = &self.direction;
+        Estimate {
+            light: self.light,
+            radiance: self.radiance[i],
+            intensity: self.intensity[i],
+            distance_squared: self.distance_squared[i],
+            direction: Vec3::new(x[i], y[i], z[i]),
+        }
+    }
+}
+
+/// Calls `each` with the lights of `list` that a point of `block` accepts, in the order of the list.
+#[inline(always)]
+pub(super) fn evaluate_block<S: Simd, L: Lobe>(
+    simd: S,
+    frame: &Frame,
+    lights: &ShadingBatch<L>,
+    list: &[u32],
+    block: &PointBlock,
+    mut each: impl FnMut(&BlockEstimates),
+) {
+    let mut estimates = BlockEstimates::NONE;
+    for light in list {
+        let splat = Lights::broadcast(simd, lights, *light);
+        estimates.light = *light;
+        estimates.accepted = 0;
+        for part in 0..parts::<S>() {
+            let lobe = lights.lobes.get(*light as usize);
+            let points = block.part(simd, part);
+            let evaluated = evaluate::<S, L>(
+                frame,
+                &splat,
+                #[inline(always)]
+                |_| lobe,
+                &points,
+            );
+            let Some(evaluated) = evaluated else {
+                if parts::<S>() > 1 {
+                    clear(&mut estimates, part, S::f32s::LEN);
+                }
+                continue;
+            };
+            estimates.accepted |= evaluated.accepted << (part * S::f32s::LEN);
+            store(&mut estimates.radiance, part, evaluated.radiance);
+            store(&mut estimates.intensity, part, evaluated.intensity);
+            store(
+                &mut estimates.distance_squared,
+                part,
+                evaluated.distance_squared,
+            );
+            let Vector3 { x, y, z } = evaluated.direction;
+            for (lanes, vector) in estimates.direction.iter_mut().zip([x, y, z]) {
+                store(lanes, part, vector);
+            }
+        }
+        if estimates.accepted != 0 {
+            each(&estimates);
+        }
+    }
+}
+
+/// Clears what another light has left in a part.
+#[inline(always)]
+fn clear(estimates: &mut BlockEstimates, part: usize, lanes: usize) {
+    let [x, y, z] = &mut estimates.direction;
+    let [radiance, intensity, distance] = [
+        &mut estimates.radiance,
+        &mut estimates.intensity,
+        &mut estimates.distance_squared,
+    ];
+    for numbers in [radiance, intensity, distance, x, y, z] {
+        numbers[part * lanes..][..lanes].fill(0.0);
+    }
+}

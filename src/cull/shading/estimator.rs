@@ -1,0 +1,200 @@
+use fearless_simd::{Level, dispatch};
+
+use super::batch::ShadingBatch;
+use super::block::{BlockEstimates, PointBlock, evaluate_block};
+use super::kernel::Frame;
+use super::pairs::fold_pairs;
+use super::point::{Estimate, ShadedPoint};
+use crate::base::{Error, number_in};
+use crate::cull::culler::{at_most, widest};
+use crate::light::Roulette;
+use crate::lobe::Lobe;
+
+/// Evaluates lists of lights, many at a time: acceptance, and the estimate of the radiance, of each light.
+///
+/// Estimates have the bits of the scalar functions: [`Roulette::estimate`] of
+/// [`radiant_intensity`](crate::Vpl::radiant_intensity) and distance in the direction of
+/// [`Vpl::direction_to`](crate::Vpl::direction_to). They come in the order of the list, and do not depend on
+/// the width of the vectors. Lights that are not accepted are not reported, so that visibility and what the
+/// surface does with the light are computed for the others alone.
+///
+/// There are two ways. Where points share a list, as those of a tile do, [`at_block`](Self::at_block) takes
+/// sixteen of them and is fastest. [`at_points`](Self::at_points) takes points with lists of their own, however
+/// short.
+///
+/// Nothing allocates. A NaN comes only of what the scalar functions make NaN of.
+///
+/// ```
+/// use stochastic_light_culling::{
+///     Direction, Ggx, GgxLobe, Incidence, PointBlock, RadianceEstimator, Roulette, Schlick, Seed,
+///     ShadedPoint, ShadingBatch, Vpl, glam::Vec3,
+/// };
+///
+/// // Lights on a floor, and points of a wall.
+/// let lobe = GgxLobe::new(Ggx::new(0.4)?, Schlick::new(0.9)?, Incidence::head_on(Direction::Y));
+/// let light = |i: u32| Vpl::new(Vec3::new(i as f32, 0.0, 3.0), 0.2, lobe);
+/// let lights = (0..10).map(light).collect::<Result<Vec<_>, _>>()?;
+/// let point = |i: u32| ShadedPoint {
+///     position: Vec3::new(0.1 * i as f32, 2.0, 0.0),
+///     normal: Vec3::Z,
+/// };
+///
+/// let (roulette, seed) = (Roulette::new(0.001)?, Seed(0).frame(0));
+/// let mut batch = ShadingBatch::new();
+/// batch.extend((0..).zip(&lights).map(|(i, light)| (light, seed.xi(i))));
+/// let estimator = RadianceEstimator::new(&roulette);
+///
+/// // The irradiance of each point, from the lights of a list.
+/// let list = [0, 1, 4, 5, 9];
+/// let cosine = |direction: Vec3| (-direction).dot(Vec3::Z).max(0.0);
+/// let mut irradiance = [0.0; 16];
+/// let points = PointBlock::take(&mut (0..16).map(point)).expect("sixteen");
+/// estimator.at_block(&batch, &list, &points, |estimates| {
+///     for (i, estimate) in estimates.iter() {
+///         irradiance[i] += estimate.radiance * cosine(estimate.direction);
+///     }
+/// });
+///
+/// // The same from a list for each point, and one by one.
+/// let mut again = [0.0; 16];
+/// let lists = (0..16).map(|i| (point(i), &list[..]));
+/// estimator.at_points(&batch, lists, |i, estimate| {
+///     again[i] += estimate.radiance * cosine(estimate.direction);
+/// });
+/// let one_by_one = list.iter().map(|i| {
+///     let light = &lights[*i as usize];
+///     let (direction, distance_squared) = light.direction_to(point(7).position);
+///     let intensity = light.radiant_intensity(direction);
+///     roulette.estimate(intensity, distance_squared, seed.xi(*i)) * cosine(direction)
+/// });
+/// assert!(irradiance[7] > 0.0 && irradiance == again);
+/// assert_eq!(irradiance[7], one_by_one.fold(0.0, |sum, more| sum + more));
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct RadianceEstimator {
+    frame: Frame,
+    level: Level,
+}
+
+impl RadianceEstimator {
+    /// Creates an estimator with the widest vectors of this processor. Without the feature `std` the processor
+    /// cannot be queried, and the vectors are those of the compilation target.
+    #[must_use]
+    pub fn new(roulette: &Roulette) -> Self {
+        Self {
+            frame: Frame {
+                roulette: *roulette,
+                least_distance_squared: 0.0,
+            },
+            level: widest(),
+        }
+    }
+
+    /// Returns this estimator with squared distances taken to be at least `least`, in the squared unit of
+    /// length. It keeps virtual lights, which stand for a patch of a surface, from becoming brighter than the
+    /// patch. Directions do not change. The range of a light shrinks where it was smaller, so bounds stay
+    /// valid.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `least` is negative, infinite or NaN.
+    pub fn with_least_distance_squared(self, least: f32) -> Result<Self, Error> {
+        let least = number_in("least squared distance", least, "in [0, ∞)", 0.0..=f32::MAX)?;
+        Ok(Self {
+            frame: Frame {
+                least_distance_squared: least,
+                ..self.frame
+            },
+            ..self
+        })
+    }
+
+    /// Returns this estimator with vectors of at most `lanes` lanes, as
+    /// [`Culler::with_lanes`](crate::Culler::with_lanes) does. The estimates are the same.
+    #[must_use]
+    pub fn with_lanes(self, lanes: usize) -> Self {
+        Self {
+            level: at_most(lanes),
+            ..self
+        }
+    }
+
+    /// Evaluates the lights of `list` at the points of `block`. Calls `each` with every light that one of them
+    /// accepts, in the order of the list.
+    ///
+    /// `each` is compiled for the vectors of this processor where it is inlined. A loop in it over all sixteen
+    /// radiances, of which those of other points are zero, is then a few instructions.
+    ///
+    /// # Panics
+    ///
+    /// If `list` holds an index of no light.
+    #[inline]
+    pub fn at_block<L: Lobe>(
+        &self,
+        lights: &ShadingBatch<L>,
+        list: &[u32],
+        block: &PointBlock,
+        mut each: impl FnMut(&BlockEstimates),
+    ) {
+        let (frame, each) = (&self.frame, &mut each);
+        dispatch!(self.level, simd => evaluate_block(simd, frame, lights, list, block, each));
+    }
+
+    /// Evaluates at each of `points` the lights of its list. Calls `each` with the turn of the point, 0 for
+    /// the first, and the estimate of every light that it accepts: point by point, in the order of the lists.
+    ///
+    /// A vector holds lights of several points where lists are short.
+    ///
+    /// # Panics
+    ///
+    /// If a list holds an index of no light.
+    #[inline]
+    pub fn at_points<'l, L: Lobe>(
+        &self,
+        lights: &ShadingBatch<L>,
+        points: impl IntoIterator<Item = (ShadedPoint, &'l [u32])>,
+        mut each: impl FnMut(usize, &Estimate),
+    ) {
+        self.fold_at_points(lights, points, (), |(), turn, estimate| {
+            each(turn, estimate);
+        });
+    }
+
+    /// Folds what [`at_points`](Self::at_points) would report into a state, beginning with `init`, and returns
+    /// the last state.
+    ///
+    /// The state stays in registers, where what a closure borrows is in memory. This makes sums over long lists
+    /// faster.
+    ///
+    /// ```
+    /// use stochastic_light_culling::{
+    ///     ConstantLobe, RadianceEstimator, Roulette, ShadedPoint, ShadingBatch, Vpl, Xi, glam::Vec3,
+    /// };
+    ///
+    /// let mut lights = ShadingBatch::new();
+    /// lights.push(&Vpl::new(Vec3::Z, 1.0, ConstantLobe)?, Xi::new(1.0)?);
+    /// let estimator = RadianceEstimator::new(&Roulette::new(0.01)?);
+    /// let point = ShadedPoint::from(Vec3::ZERO);
+    /// let sum = estimator.fold_at_points(&lights, [(point, &[0, 0][..])], 0.0, |sum, _, estimate| {
+    ///     sum + estimate.radiance
+    /// });
+    /// assert_eq!(sum, 0.5 / std::f32::consts::PI);
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
+    ///
+    /// # Panics
+    ///
+    /// If a list holds an index of no light.
+    #[inline]
+    pub fn fold_at_points<'l, L: Lobe, A>(
+        &self,
+        lights: &ShadingBatch<L>,
+        points: impl IntoIterator<Item = (ShadedPoint, &'l [u32])>,
+        init: A,
+        mut each: impl FnMut(A, usize, &Estimate) -> A,
+    ) -> A {
+        let (frame, points, each) = (&self.frame, points.into_iter(), &mut each);
+        dispatch!(self.level, simd => fold_pairs(simd, frame, lights, points, init, each))
+    }
+}

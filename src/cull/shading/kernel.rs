@@ -1,0 +1,165 @@
+//! The evaluation of one light at one point, in each lane.
+
+use fearless_simd::{Simd, SimdBase, SimdMask};
+
+use super::batch::{LINE, LOBE, Line, ShadingBatch, XI};
+use crate::light::{Roulette, unit};
+use crate::lobe::{FIRST_NUMBERS, Lobe, LobeNumbers};
+use crate::num::{F32Lanes, MAX_LANES, Real, Single, Vector3};
+
+/// What all evaluations of a frame share.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    pub roulette: Roulette,
+    pub least_distance_squared: f32,
+}
+
+/// A light in each lane, without what its lobe has besides numbers.
+pub(super) struct Lights<N> {
+    position: Vector3<N>,
+    flux: N,
+    xi: N,
+    numbers: LobeNumbers<N>,
+}
+
+impl<S: Simd> Lights<F32Lanes<S>> {
+    #[inline(always)]
+    fn from_lines(simd: S, lines: [[F32Lanes<S>; LINE]; 2]) -> Self {
+        let [first, second] = lines;
+        let mut numbers = [F32Lanes::new(simd, 0.0); FIRST_NUMBERS + LINE];
+        numbers[..FIRST_NUMBERS].copy_from_slice(&first[LOBE..XI]);
+        numbers[FIRST_NUMBERS..].copy_from_slice(&second);
+        Self {
+            position: Vector3::new(first[0], first[1], first[2]),
+            flux: first[3],
+            xi: first[XI],
+            numbers,
+        }
+    }
+
+    /// The same light in each lane.
+    #[inline(always)]
+    pub fn broadcast<L: Lobe>(simd: S, batch: &ShadingBatch<L>, light: u32) -> Self {
+        let lines = ShadingBatch::<L>::lines_per_light();
+        let stored = &batch.lines[ShadingBatch::<L>::first_line(light)..][..lines];
+        let mut vectors = [[F32Lanes::new(simd, 0.0); LINE]; 2];
+        for (vectors, line) in vectors.iter_mut().zip(stored) {
+            for (vector, number) in vectors.iter_mut().zip(line.0) {
+                *vector = F32Lanes::new(simd, number);
+            }
+        }
+        Self::from_lines(simd, vectors)
+    }
+
+    /// The lights with the first of `indices`, one in each lane.
+    #[inline(always)]
+    pub fn gathered<L: Lobe>(simd: S, batch: &ShadingBatch<L>, indices: &[u32]) -> Self {
+        let mut vectors = [[F32Lanes::new(simd, 0.0); LINE]; 2];
+        let lines = ShadingBatch::<L>::lines_per_light();
+        for (line, vectors) in vectors[..lines].iter_mut().enumerate() {
+            let line_of = |lane: usize| {
+                let first = ShadingBatch::<L>::first_line(indices[lane]);
+                &batch.lines[first + line]
+            };
+            for part in 0..LINE / S::f32s::LEN {
+                transpose(simd, line_of, part, vectors);
+            }
+        }
+        Self::from_lines(simd, vectors)
+    }
+}
+
+/// Transposes the numbers of one vector's width of each lane's line, those of `part`.
+#[inline(always)]
+fn transpose<'a, S: Simd>(
+    simd: S,
+    line_of: impl Fn(usize) -> &'a Line,
+    part: usize,
+    numbers: &mut [F32Lanes<S>; LINE],
+) {
+    let lanes = S::f32s::LEN;
+    let mut rows = [F32Lanes::new(simd, 0.0); MAX_LANES];
+    for (lane, row) in rows[..lanes].iter_mut().enumerate() {
+        *row = row.load(&line_of(lane).0[part * lanes..]);
+    }
+    // Interleaving the upper half of the rows with the lower moves each bit of an element's place, (row,
+    // column), to the next higher. Rows and columns have swapped after half of the bits.
+    for _ in 0..lanes.ilog2() {
+        let mut interleaved = rows;
+        for i in 0..lanes / 2 {
+            let (low, high) = rows[i].0.interleave(rows[i + lanes / 2].0);
+            interleaved[2 * i] = F32Lanes(low);
+            interleaved[2 * i + 1] = F32Lanes(high);
+        }
+        rows = interleaved;
+    }
+    numbers[part * lanes..][..lanes].copy_from_slice(&rows[..lanes]);
+}
+
+/// A point in each lane.
+#[derive(Clone, Copy)]
+pub(super) struct Points<N> {
+    pub position: Vector3<N>,
+    pub normal: Vector3<N>,
+}
+
+/// A light's estimate at a point in each lane.
+pub(super) struct Evaluated<S: Simd> {
+    /// The bits of the lanes in which the light is accepted; at least one.
+    pub accepted: u32,
+    /// Zero where the light is not accepted.
+    pub radiance: F32Lanes<S>,
+    pub intensity: F32Lanes<S>,
+    pub distance_squared: F32Lanes<S>,
+    pub direction: Vector3<F32Lanes<S>>,
+}
+
+/// The square (16u)² of the sine below the horizon from which on rounding cannot lift a point above it.
+const DARK_SINE_SQUARED: f32 = 9.094_947e-13;
+
+/// Keeps the square of n·w away from where products underflow.
+const LEAST_DARK_SQUARE: f32 = 1e-30;
+
+/// Evaluates a light at a point in each lane. `None` if no lane accepts it.
+///
+/// Direction, intensity and acceptance are those of scalar code. Where every lane is dark, because the light
+/// faces away or is below the point's horizon, there is neither a root nor a division.
+#[inline(always)]
+pub(super) fn evaluate<'a, S: Simd, L: Lobe + 'a>(
+    frame: &Frame,
+    lights: &Lights<F32Lanes<S>>,
+    lobe_of: impl Fn(usize) -> Option<&'a L>,
+    points: &Points<F32Lanes<S>>,
+) -> Option<Evaluated<S>> {
+    let way = points.position - lights.position;
+    let length_squared = way.length_squared();
+    let mut may_be_lit = !points.normal.dot(way).is_positive();
+    if let Some(normal) = L::horizon_in_lanes(&lights.numbers) {
+        let height = normal.dot(way);
+        let margin = length_squared * DARK_SINE_SQUARED + LEAST_DARK_SQUARE;
+        // False for NaN, which nothing accepts.
+        may_be_lit &= (height * height.abs()).gt(-margin);
+    }
+    if !may_be_lit.any_true() {
+        return None;
+    }
+    let direction = unit(way, length_squared);
+    let intensity = lights.flux * L::value_in_lanes(&lights.numbers, lobe_of, direction);
+    // NaN if the squared length is.
+    let distance_squared = length_squared
+        .splat(frame.least_distance_squared)
+        .max(length_squared);
+    let roulette = &frame.roulette;
+    let accepted = may_be_lit & roulette.accepts_in_lanes(intensity, distance_squared, lights.xi);
+    if !accepted.any_true() {
+        return None;
+    }
+    let radiance = roulette.accepted_radiance(intensity, distance_squared);
+    Some(Evaluated {
+        accepted: accepted.to_bitmask() as u32,
+        radiance: F32Lanes::select(accepted, radiance, radiance.zero()),
+        intensity,
+        distance_squared,
+        direction,
+    })
+}

@@ -1,0 +1,21 @@
+//! Evaluation of listed lights at the points that they may reach, in lanes.
+//!
+//! [`ShadingBatch`] holds a line of 64 bytes for each light. [`RadianceEstimator`] evaluates a list of lights
+//! in one of two ways (`estimator`). For the points of a tile, a light's line is broadcast, and a vector holds
+//! one point in each lane (`block`). For points with lists of their own, a vector holds a light and a point in
+//! each lane, and as many lines are transposed (`pairs`). Both call one function (`kernel`).
+//!
+//! Direction, lobe and roulette are the generic functions that scalar code runs, so that estimates have the
+//! same bits.
+
+mod batch;
+mod block;
+mod estimator;
+mod kernel;
+mod pairs;
+mod point;
+
+pub use batch::ShadingBatch;
+pub use block::{BlockEstimates, PointBlock};
+pub use estimator::RadianceEstimator;
+pub use point::{Estimate, ShadedPoint};
