@@ -203,8 +203,8 @@ pub use bound::{
 };
 #[cfg(feature = "cull")]
 pub use cull::{
-    BatchBuilder, BlockEstimates, CullCounters, Culler, DepthOrder, Estimate, LightBatch,
-    LightLists, PointBlock, RadianceEstimator, ShadedPoint, ShadingBatch, TileDepths,
+    BatchBuilder, BlockEstimates, CullCounters, Culler, Estimate, LightBatch, LightLists,
+    PointBlock, RadianceEstimator, ShadedPoint, ShadingBatch, TileDepths,
 };
 #[cfg(feature = "bytemuck")]
 pub use interop::{GpuEllipsoid, GpuSphere};

@@ -4,10 +4,10 @@
 use proptest::prelude::*;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BoundStrategy, Bounded, BoxTest, Camera,
-    Conductor, ConstantLobe, DepthOrder, Dielectric, Direction, Ellipsoid, Fresnel, Ggx, GgxLobe,
-    Incidence, LambertLobe, LightBatch, Lobe, MaskingShadowing, NoFresnel, OwnBound, Paper,
-    PhongLobe, Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Seed, Sphere,
-    Spheroid, Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    Conductor, ConstantLobe, Dielectric, Direction, Ellipsoid, Fresnel, Ggx, GgxLobe, Incidence,
+    LambertLobe, LightBatch, Lobe, MaskingShadowing, NoFresnel, OwnBound, Paper, PhongLobe,
+    Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Seed, Sphere, Spheroid, Tight,
+    Triaxial, Vpl, Xi, glam::Vec3,
 };
 use support::generators::{self, Lit, cases, log_uniform};
 
@@ -328,50 +328,6 @@ proptest! {
         let moved: Vec<Ellipsoid> = moved.into_iter().map(Ellipsoid::from).collect();
         frame.same_placed(&moved)?;
     }
-
-    #[test]
-    fn depth_order_is_stable_and_that_of_depths(
-        view in generators::view(),
-        positions in prop::collection::vec(generators::position(), 0..300),
-        far in generators::log_uniform(1.0, 1e4),
-    ) {
-        // Lights about an eye that may be far from the origin.
-        let mut view = view;
-        view.from_world.w_axis *= Vec3::splat(far as f32).extend(1.0);
-        let camera = Camera::new(view.from_world, view.projection).unwrap();
-        let eye = camera.to_world_space(Vec3::ZERO);
-        let positions: Vec<Vec3> = positions.into_iter().map(|position| eye + position).collect();
-        let distances = positions.iter().map(|position| (*position - eye).length());
-        let rounding = 1e-6 * distances.fold(0.0, f32::max);
-        let depth = |index: u32| camera.to_camera_space(positions[index as usize]).z;
-        let farthest = (0..positions.len() as u32).map(depth).fold(0.0, f32::max);
-        let mut order = DepthOrder::new();
-        order.of([Vec3::ONE; 7], &camera);
-        let order = order.of(positions.iter().copied(), &camera);
-
-        let mut sorted = order.to_vec();
-        sorted.sort_unstable();
-        prop_assert_eq!(sorted, (0..positions.len() as u32).collect::<Vec<_>>());
-        for pair in order.windows(2) {
-            let [near, far] = [depth(pair[0]), depth(pair[1])];
-            // To the one per cent of its steps, and the rounding of depths, wherever the origin is.
-            let least = farthest / 200.0;
-            prop_assert!(near <= 1.01 * far.max(least) + rounding, "{near} {far}");
-            prop_assert!(pair[0] < pair[1] || near < far + rounding, "{near} {far}");
-        }
-    }
-}
-
-#[test]
-fn lights_behind_the_eye_come_first_in_the_order_given() {
-    let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..9.0).unwrap();
-    let positions =
-        [-4.0, 3.0, -2.0, -1e-3, 1.0, -4.0, f32::MAX, -2.0].map(|z| Vec3::new(0.5, 0.1, z));
-    let mut order = DepthOrder::new();
-    assert_eq!(order.of(positions, &camera), [1, 3, 4, 6, 2, 7, 0, 5]);
-    assert!(order.of([], &camera).is_empty());
-    let unseen = [Vec3::Z, Vec3::ZERO, Vec3::splat(f32::MAX)];
-    assert_eq!(order.of(unseen, &camera), [0, 1, 2]);
 }
 
 #[test]
@@ -393,13 +349,11 @@ fn later_frames_allocate_nothing() {
     let lobe = LambertLobe::new(0.5, Direction::Y).unwrap();
     let light = |i| Vpl::new(Vec3::new(0.0, 1.0, -0.1 * i as f32), 1.0, lobe).unwrap();
     let lights: Vec<_> = (0..1000).map(light).collect();
-    let (mut order, mut batch) = (DepthOrder::new(), LightBatch::new());
+    let mut batch = LightBatch::new();
     let mut draw_frame = || {
         let builder = BatchBuilder::new(&Roulette::new(0.1).unwrap(), &camera);
-        let order = order.of(lights.iter().map(Vpl::position), &camera);
-        let lights = order
-            .iter()
-            .map(|i| (*i, &lights[*i as usize], Seed(0).frame(0).xi(*i)));
+        let lights = (0..).zip(&lights);
+        let lights = lights.map(|(i, light)| (i, light, Seed(0).frame(0).xi(i)));
         batch.clear();
         builder.add(lights, &mut batch);
     };

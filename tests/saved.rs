@@ -81,7 +81,7 @@ fn each_is_saved_under_the_names_of_its_constructor() -> Result<(), Error> {
     };
     assert_saved(&glassy, json!({ "base": 0.25, "rise": 0.75 }));
     let counted = json!({
-        "block_tests": 0, "tile_tests": 0, "empty": 0, "rejected_exactly": 0, "pairs": 0,
+        "block_tests": 0, "tile_tests": 0, "box_tests": 0, "empty": 0, "rejected_exactly": 0, "pairs": 0,
     });
     assert_saved(&CullCounters::default(), counted);
     Ok(())

@@ -2,10 +2,9 @@
 //! to radiance.
 
 use stochastic_light_culling::{
-    BatchBuilder, Bounded, Camera, CullCounters, Culler, DepthInterval, DepthOrder, Ellipsoid,
-    Error, GgxLobe, LightBatch, LightLists, PointBlock, ProjectedEllipsoid, RadianceEstimator,
-    Roulette, Schlick, Seed, ShadingBatch, TileDepths, TileGrid, Vpl, Xi, glam::Vec3,
-    rank_along_curve,
+    BatchBuilder, Bounded, Camera, CullCounters, Culler, DepthInterval, Ellipsoid, Error, GgxLobe,
+    LightBatch, LightLists, PointBlock, ProjectedEllipsoid, RadianceEstimator, Roulette, Schlick,
+    Seed, ShadingBatch, TileDepths, TileGrid, Vpl, Xi, glam::Vec3, rank_along_curve,
 };
 
 pub type Light = Vpl<GgxLobe<Schlick>>;
@@ -20,7 +19,6 @@ pub struct LightPass {
     size: [u32; 2],
     grid: TileGrid,
     tiles: TileDepths,
-    order: DepthOrder,
     batch: LightBatch<ProjectedEllipsoid>,
     culler: Culler<ProjectedEllipsoid>,
     lists: LightLists,
@@ -46,7 +44,6 @@ impl LightPass {
         let mut shading = ShadingBatch::new();
         shading.extend((0..).zip(&lights).map(|(i, (light, _))| (light, xi(i, 0))));
         Ok(Self {
-            order: DepthOrder::new(),
             lights,
             roulette,
             size,
@@ -78,13 +75,9 @@ impl LightPass {
             self.shading.set_xi(i, xi(i, frame));
         }
 
-        // From near to far, which makes culling faster and changes nothing else.
-        let positions = self.lights.iter().map(|(light, _)| light.position());
-        let order = self.order.of(positions, camera);
-        let placed = order.iter().map(|index| {
-            let (light, unit_bound) = &self.lights[*index as usize];
-            let scale = self.roulette.scale(light.flux(), xi(*index, frame));
-            (*index, unit_bound, light.position(), scale)
+        let placed = (0..).zip(&self.lights).map(|(index, (light, unit_bound))| {
+            let scale = self.roulette.scale(light.flux(), xi(index, frame));
+            (index, unit_bound, light.position(), scale)
         });
         self.batch.clear();
         BatchBuilder::new(&self.roulette, camera).add_placed(placed, &mut self.batch);

@@ -1,90 +1,20 @@
 use alloc::vec::Vec;
+use core::marker::PhantomData;
 
-use super::lanes::{LANES, Lanes};
-use crate::project::{Field, Projected};
+use fearless_simd::{Simd, SimdBase, SimdMask, dispatch};
 
-/// Sixteen lights: the fields of their shapes, and their indices.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(super) struct Chunk<P: Projected> {
-    pub fields: P::Fields<Lanes>,
-    pub lights: Lanes<u32>,
-}
+use super::culler::widest;
+use super::lanes::{LANES, Record, compress, load_records, write_chosen};
+use crate::num::F32Lanes;
+use crate::project::Projected;
+use crate::view::ViewBounds;
 
-impl<P: Projected> Chunk<P> {
-    /// A chunk whose shapes touch nothing.
-    pub fn nowhere() -> Self {
-        let mut fields = P::fields_of([0.0; LANES]);
-        for (lanes, nowhere) in fields.as_mut().iter_mut().zip(P::NOWHERE.as_ref()) {
-            *lanes = [*nowhere; LANES];
-        }
-        Self {
-            fields,
-            lights: [0; LANES],
-        }
-    }
-
-    /// Copies the light in lane `from_lane` of `from` to `lane`.
-    #[inline(always)]
-    pub fn copy(&mut self, lane: usize, from: &Self, from_lane: usize) {
-        let fields = self.fields.as_mut().iter_mut();
-        for (to, field) in fields.zip(from.fields.as_ref()) {
-            to[lane] = field[from_lane];
-        }
-        self.lights[lane] = from.lights[from_lane];
-    }
-
-    /// The fields of the light in `lane`.
-    #[inline(always)]
-    pub fn fields_of<T: Field + From<f32>>(&self, lane: usize) -> P::Fields<T> {
-        let mut fields = P::fields_of(T::from(0.0));
-        for (field, lanes) in fields.as_mut().iter_mut().zip(self.fields.as_ref()) {
-            *field = lanes[lane].into();
-        }
-        fields
-    }
-}
-
-/// The bits of all lights of a chunk.
-const ALL: u32 = (1 << LANES) - 1;
-
-/// The range of depths that each of sixteen chunks reaches. Empty for chunks past the end.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(super) struct Reach {
-    pub near: Lanes,
-    pub far: Lanes,
-}
-
-impl Reach {
-    pub const NONE: Self = Self {
-        near: [f32::INFINITY; LANES],
-        far: [f32::NEG_INFINITY; LANES],
-    };
-
-    /// The range of the chunk at `lane`, modulo sixteen.
-    #[inline(always)]
-    pub fn get(&self, lane: usize) -> [f32; 2] {
-        [self.near[lane % LANES], self.far[lane % LANES]]
-    }
-
-    /// Extends the range of the chunk at `lane`, modulo sixteen, to include `depths`.
-    #[inline(always)]
-    pub fn widen(&mut self, lane: usize, depths: [f32; 2]) {
-        let (near, far) = (&mut self.near[lane % LANES], &mut self.far[lane % LANES]);
-        (*near, *far) = (near.min(depths[0]), far.max(depths[1]));
-    }
-}
-
-/// Projected lights in the layout that a [`Culler`](super::Culler) takes, sixteen side by side.
+/// Projected lights, as a [`Culler`](super::Culler) takes them: 92 bytes each.
 ///
 /// A [`BatchBuilder`](super::BatchBuilder) adds many lights at a time, from lights or kept bounds;
 /// [`push`](Self::push) adds one that is projected already. Keeps its memory when cleared.
 ///
-/// Lists hold their lights in the order of the batch. The order does not change which lights a list holds,
-/// but it does change the speed: lights that are added roughly from near to far are culled 1.2 to 1.5 times as
-/// fast, since sixteen lights that reach the same depths are skipped at once.
-/// [`DepthOrder`](super::DepthOrder) gives such an order.
+/// Lists hold their lights in the order of the batch. Any order is as fast.
 ///
 /// ```
 /// use stochastic_light_culling::{Camera, LightBatch, Sphere, glam::Vec3};
@@ -134,9 +64,18 @@ impl Reach {
 #[derive(Clone, Debug)]
 pub struct LightBatch<P: Projected> {
     len: usize,
-    pub(super) chunks: Vec<Chunk<P>>,
-    pub(super) reach: Vec<Reach>,
+    /// The shape of each light. Longer than `len`, so that lights can be written before they are counted.
+    records: Vec<Record>,
+    /// The bounds of each shape once more, an array for each end: the order of [`ViewBounds`]. Most lights are
+    /// rejected by these alone, so that their records are never read.
+    bounds: [Vec<f32>; ENDS],
+    /// The index of each light.
+    lights: Vec<u32>,
+    shape: PhantomData<P>,
 }
+
+/// The number of ends of the three ranges of bounds.
+const ENDS: usize = 6;
 
 impl<P: Projected> LightBatch<P> {
     /// Creates an empty batch. Does not allocate.
@@ -144,8 +83,10 @@ impl<P: Projected> LightBatch<P> {
     pub const fn new() -> Self {
         Self {
             len: 0,
-            chunks: Vec::new(),
-            reach: Vec::new(),
+            records: Vec::new(),
+            bounds: [const { Vec::new() }; ENDS],
+            lights: Vec::new(),
+            shape: PhantomData,
         }
     }
 
@@ -161,11 +102,6 @@ impl<P: Projected> LightBatch<P> {
         self.len == 0
     }
 
-    /// The elements that a list needs room for while it is written: a whole chunk for the last light.
-    pub(super) fn room_for_a_list(&self) -> usize {
-        (self.chunks().len() + 1) * LANES
-    }
-
     /// Removes all lights and keeps the memory.
     pub fn clear(&mut self) {
         self.len = 0;
@@ -174,111 +110,116 @@ impl<P: Projected> LightBatch<P> {
     /// Adds a light: its index `light`, which lists will hold, and its projected `shape`.
     ///
     /// All shapes must be projected with the camera whose tiles are culled.
+    #[inline]
     pub fn push(&mut self, light: u32, shape: &P) {
-        let (chunk, lane) = (self.len / LANES, self.len % LANES);
-        if lane == 0 {
-            self.begin(chunk, &Chunk::nowhere());
-        }
-        let Chunk { fields, lights } = &mut self.chunks[chunk];
-        let shape = shape.to_fields();
-        for (lanes, field) in fields.as_mut().iter_mut().zip(shape.as_ref()) {
-            lanes[lane] = *field;
-        }
-        lights[lane] = light;
-        self.reach[chunk / LANES].widen(chunk % LANES, P::bounds_of(&shape).depths);
-        self.len += 1;
+        self.extend([(light, *shape)]);
     }
 
     /// Iterates over the indices and shapes of the lights, in the order in which they were added.
     pub fn iter(&self) -> impl Iterator<Item = (u32, P)> {
-        (0..self.len).map(|index| {
-            let (chunk, lane) = (&self.chunks[index / LANES], index % LANES);
-            (chunk.lights[lane], P::from_fields(chunk.fields_of(lane)))
-        })
+        let shapes = self
+            .records()
+            .iter()
+            .map(|r| P::from_fields(r.fields::<P>()));
+        self.lights().iter().copied().zip(shapes)
     }
 
-    /// The lane of the next light.
-    pub(super) fn next_lane(&self) -> usize {
-        self.len % LANES
-    }
-
-    /// Adds the lights of `chunk` whose bits are set in `bits`. All of them reach depths within `reach` only.
+    /// Adds a vector of lights, of which those in `chosen` are kept: their indices, fields and `records`.
     #[inline(always)]
-    pub(super) fn append(&mut self, chunk: &Chunk<P>, bits: u32, reach: [f32; 2]) {
-        if bits == ALL && self.next_lane() == 0 {
-            let index = self.len / LANES;
-            self.begin(index, chunk);
-            self.reach[index / LANES].widen(index % LANES, reach);
-            self.len += LANES;
-        } else {
-            self.append_some(chunk, bits, reach);
+    pub(super) fn append<S: Simd>(
+        &mut self,
+        simd: S,
+        chosen: S::mask32s,
+        lights: &[u32],
+        fields: &P::Fields<F32Lanes<S>>,
+        records: &[Record],
+    ) {
+        let (start, lanes) = (self.len, S::f32s::LEN);
+        self.make_room(start + lanes);
+        let numbers = S::u32s::from_slice(simd, &lights[..lanes]);
+        self.len += write_chosen::<S>(numbers, chosen, &mut self.lights[start..]);
+        for (ends, end) in self.bounds.iter_mut().zip(ends(P::bounds_of(fields))) {
+            compress::<S>(end, chosen).store_slice(&mut ends[start..start + lanes]);
+        }
+        // Each record is overwritten by the next one unless it is chosen.
+        let (mut end, bits) = (start, chosen.to_bitmask());
+        for (lane, record) in records[..lanes].iter().enumerate() {
+            self.records[end] = *record;
+            end += (bits >> lane & 1) as usize;
         }
     }
 
-    /// [`append`](Self::append), light by light.
-    fn append_some(&mut self, chunk: &Chunk<P>, mut bits: u32, reach: [f32; 2]) {
-        while bits != 0 {
-            let from = bits.trailing_zeros() as usize % LANES;
-            bits &= bits - 1;
-            let (index, to) = (self.len / LANES, self.next_lane());
-            if to == 0 {
-                self.begin(index, &Chunk::nowhere());
+    /// Counts the lights up to `end`, whose records are written.
+    fn count(&mut self, end: usize) {
+        dispatch!(widest(), simd => self.copy_bounds(simd, end));
+        self.len = end;
+    }
+
+    /// Copies the bounds of the lights from `len` to `end` out of their records.
+    #[inline(always)]
+    fn copy_bounds<S: Simd>(&mut self, simd: S, end: usize) {
+        for first in (self.len..end).step_by(S::f32s::LEN) {
+            let records = &self.records[first..][..S::f32s::LEN];
+            let fields = load_records::<S, P>(simd, |lane| &records[lane]);
+            for (ends, end) in self.bounds.iter_mut().zip(ends(P::bounds_of(&fields))) {
+                end.0.store_slice(&mut ends[first..][..S::f32s::LEN]);
             }
-            self.chunks[index].copy(to, chunk, from);
-            self.reach[index / LANES].widen(index % LANES, reach);
-            self.len += 1;
         }
     }
 
-    /// Stores `chunk` at `index`, which is at most the number of chunks.
+    /// The bounds of as many lights as a vector has lanes, from place `first` on. Arbitrary past the last light.
     #[inline(always)]
-    fn begin(&mut self, index: usize, chunk: &Chunk<P>) {
-        set_or_push(&mut self.chunks, index, chunk);
-        if index % LANES == 0 {
-            set_or_push(&mut self.reach, index / LANES, &Reach::NONE);
+    pub(super) fn bounds<S: Simd>(&self, simd: S, first: usize) -> ViewBounds<F32Lanes<S>> {
+        let [left, right, bottom, top, near, far] = &self.bounds;
+        let load =
+            |ends: &[f32]| F32Lanes(S::f32s::from_slice(simd, &ends[first..][..S::f32s::LEN]));
+        ViewBounds {
+            across: [load(left), load(right)],
+            down: [load(bottom), load(top)],
+            depths: [load(near), load(far)],
         }
     }
 
-    /// The chunks that hold lights.
-    pub(super) fn chunks(&self) -> &[Chunk<P>] {
-        &self.chunks[..self.len.div_ceil(LANES)]
-    }
-
-    /// The ranges of depths of these chunks.
-    pub(super) fn reach(&self) -> &[Reach] {
-        &self.reach[..self.chunks().len().div_ceil(LANES)]
-    }
-
-    /// Makes room for as many lights as `other` has, so that filtering those does not allocate.
-    pub(super) fn reserve_for(&mut self, other: &Self) {
-        let chunks = other.chunks().len() + GROUP_ROOM;
-        grow(&mut self.chunks, chunks, Chunk::nowhere);
-        grow(&mut self.reach, chunks.div_ceil(LANES), || Reach::NONE);
-    }
-
-    /// Chunks with room for the lights of sixteen chunks after the first `len` lights, and their ranges of
-    /// depths, which are empty for chunks that hold no lights. The caller fills them from the front and then
-    /// calls [`set_len`](Self::set_len).
-    #[inline(always)]
-    pub(super) fn room_after(&mut self, len: usize) -> (&mut [Chunk<P>], &mut [Reach]) {
-        let chunks = len / LANES + GROUP_ROOM;
-        let (reach, begun) = (chunks.div_ceil(LANES), len.div_ceil(LANES).div_ceil(LANES));
-        grow(&mut self.chunks, chunks, Chunk::nowhere);
-        grow(&mut self.reach, reach, || Reach::NONE);
-        self.reach[begun..reach].fill(Reach::NONE);
-        (&mut self.chunks[..chunks], &mut self.reach[..reach])
-    }
-
-    /// The number of chunks that there is room for.
+    /// The memory in use, with what is to spare.
     #[cfg(all(test, feature = "rayon"))]
-    pub(super) fn room(&self) -> usize {
-        self.chunks.len()
+    pub(super) fn bytes(&self) -> usize {
+        let bounds = self.bounds.iter().map(|ends| size_of_val(&ends[..]));
+        size_of_val(&self.records[..]) + bounds.sum::<usize>() + size_of_val(&self.lights[..])
     }
 
-    /// Sets the number of lights.
-    pub(super) fn set_len(&mut self, len: usize) {
-        self.len = len;
+    /// The shape of each light.
+    pub(super) fn records(&self) -> &[Record] {
+        &self.records[..self.len]
     }
+
+    /// The index of each light.
+    pub(super) fn lights(&self) -> &[u32] {
+        &self.lights[..self.len]
+    }
+
+    /// Makes room for `count` lights, and for a vector after them.
+    #[inline(always)]
+    fn make_room(&mut self, count: usize) {
+        let room = count + LANES;
+        if self.records.len() < room {
+            grow(&mut self.records, room, Record([0.0; LANES]));
+            for ends in &mut self.bounds {
+                grow(ends, room, 0.0);
+            }
+            grow(&mut self.lights, room, 0);
+        }
+    }
+}
+
+/// The ends of bounds, in the order in which a batch has them.
+#[inline(always)]
+fn ends<N>(bounds: ViewBounds<N>) -> [N; ENDS] {
+    let ViewBounds {
+        across: [left, right],
+        down: [bottom, top],
+        depths: [near, far],
+    } = bounds;
+    [left, right, bottom, top, near, far]
 }
 
 impl<P: Projected> Default for LightBatch<P> {
@@ -289,34 +230,33 @@ impl<P: Projected> Default for LightBatch<P> {
 
 impl<P: Projected> Extend<(u32, P)> for LightBatch<P> {
     fn extend<I: IntoIterator<Item = (u32, P)>>(&mut self, lights: I) {
+        let mut end = self.len;
         for (light, shape) in lights {
-            self.push(light, &shape);
+            self.make_room(end + 1);
+            self.records[end] = Record::new::<P>(&shape.to_fields());
+            self.lights[end] = light;
+            end += 1;
+            // While the records are in the cache.
+            if end == self.len + GROUP {
+                self.count(end);
+            }
         }
+        self.count(end);
     }
 }
 
-/// Chunks to reserve for the lights of sixteen chunks: they begin within a chunk and end within another, and
-/// lights that are copied a vector at a time reach into one more.
-const GROUP_ROOM: usize = LANES + 2;
+/// Lights whose bounds are copied together.
+const GROUP: usize = 4 * LANES;
 
 /// The least number of values that a buffer has room for.
 const LEAST_ROOM: usize = 32;
 
 /// Makes room for `len` values. Where the vector must grow, it grows by half as many again, since the number
 /// that a frame needs is random.
-pub(super) fn grow<V: Copy>(values: &mut Vec<V>, len: usize, value: impl FnOnce() -> V) {
+#[inline(always)]
+pub(super) fn grow<V: Copy>(values: &mut Vec<V>, len: usize, value: V) {
     if values.len() < len {
         // Small numbers of lights vary most.
-        values.resize((len + len / 2).max(LEAST_ROOM), value());
-    }
-}
-
-/// Stores `value` at `index`, which is at most the length.
-#[inline(always)]
-fn set_or_push<V: Copy>(values: &mut Vec<V>, index: usize, value: &V) {
-    if let Some(place) = values.get_mut(index) {
-        *place = *value;
-    } else {
-        values.push(*value);
+        values.resize((len + len / 2).max(LEAST_ROOM), value);
     }
 }

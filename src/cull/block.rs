@@ -1,194 +1,236 @@
-//! The recursion from blocks of tiles to smaller blocks to tiles.
-
-use alloc::vec::Vec;
+//! A block of tiles: lights are selected for parts of it, and those of each part are tested against its tiles.
 
 use fearless_simd::Simd;
 
-use super::batch::grow;
-use super::exact::append_list_exactly;
-use super::filter::{bounds_touching, filter, touching};
-use super::lanes::splat_tile;
-use super::tile_depths::{Area, NONE};
-use super::tile_list::{Row, append_list, fill_rows};
+use super::exact::ExactLists;
+use super::lanes::LANES;
+use super::lists::Window;
+use super::select::{MAX_SIDE, Parts, Ranges, Selection};
+use super::tile_depths::{Area, Cut};
+use super::tile_lists::TileLists;
 use super::{CullCounters, LightBatch, LightLists, TileDepths};
 use crate::touch::BoxTest;
-use crate::view::ViewBounds;
 
-/// The memory and the settings of a culler.
+/// The lights and the tiles of a frame.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a, P: BoxTest> {
+    pub batch: &'a LightBatch<P>,
+    pub tiles: &'a TileDepths,
+}
+
+/// The lists to write, and where they hold the tiles that are culled.
+pub(super) struct Output<'a> {
+    pub lists: &'a mut LightLists,
+    pub window: Window,
+}
+
+/// Upper limit of the tiles of a block, in each direction.
+pub(super) const BLOCK: usize = MAX_SIDE * PARTS[0];
+/// Upper limits of the tiles of the parts of a block, and of their parts, in each direction.
+const PARTS: [usize; 2] = [5, 2];
+/// So many lights are tested against all tiles of an area, each of which takes one vector or a few.
+const FEW: usize = 2 * LANES;
+
+/// How the lights of a part are selected.
+#[derive(Clone, Copy)]
+pub(super) enum By {
+    /// By their bounds, from all lights of the batch, which are read in order.
+    BoundsOfAll,
+    /// By their bounds.
+    Bounds,
+    /// By their bounds, then by the box of the part. Pays for lights that are known to have bounds that touch the
+    /// block, since those of its parts reject few of them.
+    BoundsAndBoxes,
+}
+
+/// The memory for one block at a time.
 #[derive(Clone, Debug)]
 pub(super) struct Scratch<P: BoxTest> {
-    /// For each level of the recursion, the lights of the current block. The largest block comes first.
-    blocks: Vec<LightBatch<P>>,
-    levels: usize,
-    /// For each chunk, the intermediate results for the current row of tiles.
-    rows: Vec<Row<P>>,
-    /// Whether the exact test follows the box test.
-    pub is_exact: bool,
+    /// The lights of each part of a block, and of each part of the current part.
+    selections: [Selection; PARTS.len()],
+    tile_lists: TileLists<P>,
+    /// What the exact test needs, if it follows the box test.
+    exact: Option<ExactLists>,
     pub counters: CullCounters,
 }
 
 impl<P: BoxTest> Scratch<P> {
     pub fn new() -> Self {
         Self {
-            blocks: Vec::new(),
-            levels: 0,
-            rows: Vec::new(),
-            is_exact: false,
+            selections: [const { Selection::new() }; PARTS.len()],
+            tile_lists: TileLists::new(),
+            exact: None,
             counters: CullCounters::default(),
         }
     }
 
-    /// The number of chunks that there is room for.
+    /// Has the exact test follow the box test.
+    pub fn test_exactly(&mut self) {
+        self.tile_lists.lists_places = true;
+        self.exact = Some(ExactLists::default());
+    }
+
+    /// Memory for the same tests, without any contents.
+    #[cfg(feature = "rayon")]
+    pub fn with_same_tests(&self) -> Self {
+        let mut scratch = Self::new();
+        if self.exact.is_some() {
+            scratch.test_exactly();
+        }
+        scratch
+    }
+
+    /// The memory in use, with what is to spare.
     #[cfg(all(test, feature = "rayon"))]
-    pub fn chunks(&self) -> usize {
-        self.blocks.iter().map(LightBatch::room).sum()
+    pub fn bytes(&self) -> usize {
+        let selections = self.selections.iter().map(Selection::bytes);
+        selections.sum::<usize>() + self.tile_lists.bytes()
     }
 
-    /// Prepares for `levels` levels of blocks, and resets the counters.
-    pub fn begin(&mut self, levels: usize) {
-        self.blocks
-            .resize_with(levels.max(self.blocks.len()), LightBatch::new);
-        self.levels = levels;
-        self.counters = CullCounters::default();
-    }
-
-    /// Fills `lists`, which are for `area` alone, with the lists of its tiles.
+    /// Writes the lists of the tiles of `area`, which is at most a block: those of the lights at `places` that
+    /// touch each.
     #[inline(always)]
     pub fn cull<S: Simd>(
         &mut self,
         simd: S,
-        lights: &LightBatch<P>,
-        tiles: &TileDepths,
+        scene: &Scene<P>,
+        places: &[u32],
         area: Area,
-        lists: &mut LightLists,
+        by: By,
+        output: &mut Output,
     ) {
-        // No block has more lights, so later frames need no more room. Workers have a share each.
-        let reserves = area.is_all_of(tiles);
-        if reserves {
-            grow(&mut self.rows, lights.chunks().len(), Row::zero);
-        }
-        let mut walk = Walk {
-            reserves,
-            tiles,
-            lists,
-            origin: area.min,
-            rows: &mut self.rows,
-            is_exact: self.is_exact,
-            counters: &mut self.counters,
+        self.cull_parts(simd, scene, places, area, (&PARTS, by), output);
+    }
+
+    /// Writes the lists of the tiles of any `area`, without a selection of lights for parts of it.
+    #[inline(always)]
+    pub fn cull_undivided<S: Simd>(
+        &mut self,
+        simd: S,
+        scene: &Scene<P>,
+        places: &[u32],
+        area: Area,
+        output: &mut Output,
+    ) {
+        self.cull_parts(simd, scene, places, area, (&[], By::Bounds), output);
+    }
+
+    /// Writes the lists of the tiles of `area`, divided into parts of these sizes.
+    #[inline(always)]
+    fn cull_parts<S: Simd>(
+        &mut self,
+        simd: S,
+        scene: &Scene<P>,
+        places: &[u32],
+        area: Area,
+        (sizes, by): (&[usize], By),
+        output: &mut Output,
+    ) {
+        let (tile_lists, counters) = (&mut self.tile_lists, &mut self.counters);
+        let mut divide = |output: &mut Output| {
+            let mut walk = Walk {
+                scene,
+                tile_lists: &mut *tile_lists,
+                output,
+                counters: &mut *counters,
+            };
+            walk.divide(simd, places, area, &mut self.selections, sizes, by);
         };
-        let blocks = &mut self.blocks[..self.levels];
-        if area.is_all_of(tiles) {
-            walk.subdivide(simd, lights, area, blocks);
-        } else {
-            walk.filter(simd, lights, area, blocks);
-        }
+        let Some(exact) = &mut self.exact else {
+            return divide(output);
+        };
+        divide(&mut exact.begin(area, scene.tiles));
+        let rejected = simd.vectorize(
+            #[inline(always)]
+            || exact.write(simd, scene, area, output),
+        );
+        self.counters.rejected_exactly += rejected;
     }
 }
 
-/// The state of one walk over the tiles of an area.
-struct Walk<'a, P: BoxTest> {
-    /// Whether blocks have room for all lights, so that no later frame allocates.
-    reserves: bool,
-    tiles: &'a TileDepths,
-    lists: &'a mut LightLists,
-    /// The tile whose lists come first, \[column, row\].
-    origin: [usize; 2],
-    rows: &'a mut Vec<Row<P>>,
-    is_exact: bool,
+/// The state of the walk over a block.
+struct Walk<'a, 'b, P: BoxTest> {
+    scene: &'a Scene<'a, P>,
+    tile_lists: &'a mut TileLists<P>,
+    output: &'a mut Output<'b>,
     counters: &'a mut CullCounters,
 }
 
-impl<P: BoxTest> Walk<'_, P> {
-    /// Fills the lists of the tiles of `area`. All `lights` may touch it.
-    fn subdivide<S: Simd>(
+impl<P: BoxTest> Walk<'_, '_, P> {
+    /// Writes the lists of `area`: selects the lights of parts of it, whose greatest sizes are `sizes`, until there
+    /// are few lights or few tiles.
+    fn divide<S: Simd>(
         &mut self,
         simd: S,
-        lights: &LightBatch<P>,
+        places: &[u32],
         area: Area,
-        blocks: &mut [LightBatch<P>],
+        selections: &mut [Selection],
+        sizes: &[usize],
+        by: By,
     ) {
-        if blocks.is_empty() {
-            simd.vectorize(
-                #[inline(always)]
-                || self.fill_lists(simd, lights, area),
-            );
-        } else {
-            for part in area.subdivide() {
-                self.filter(simd, lights, part, blocks);
-            }
-        }
-    }
-
-    /// Filters `lights` by `area`, and fills the lists of its tiles.
-    fn filter<S: Simd>(
-        &mut self,
-        simd: S,
-        lights: &LightBatch<P>,
-        area: Area,
-        blocks: &mut [LightBatch<P>],
-    ) {
-        let Some(bounds) = self.tiles.bounds_of(area) else {
-            self.counters.empty += 1;
-            return;
+        let ([selection, selections @ ..], [size, sizes @ ..]) = (selections, sizes) else {
+            return self.write(simd, places, area);
         };
-        let [block, smaller @ ..] = blocks else {
-            return self.subdivide(simd, lights, area, blocks);
-        };
-        if self.reserves {
-            block.reserve_for(lights);
+        if places.len() <= FEW {
+            return self.write(simd, places, area);
         }
+        if !area.exceeds(*size) {
+            return self.divide(simd, places, area, selections, sizes, by);
+        }
+        let cut = area.cut(*size);
+        let parts = parts_of(cut, self.scene.tiles);
         simd.vectorize(
             #[inline(always)]
             || {
-                let tile = splat_tile(simd, bounds);
-                // Tiles follow, whose tests begin with the bounds again. To test boxes pays if smaller blocks do.
-                self.counters.block_tests += if smaller.is_empty() {
-                    filter(simd, lights, &tile, block, bounds_touching)
-                } else {
-                    filter(simd, lights, &tile, block, touching)
-                };
+                let batch = self.scene.batch;
+                match by {
+                    By::BoundsOfAll => selection.select_of_all(simd, batch, &parts),
+                    By::Bounds => selection.select(simd, batch, places, &parts),
+                    By::BoundsAndBoxes => selection.select_by_boxes(simd, batch, places, &parts),
+                }
             },
         );
-        if !block.is_empty() {
-            self.subdivide(simd, block, area, smaller);
-        }
-    }
-
-    /// Fills the lists of the tiles of `area`, tile by tile.
-    #[inline(always)]
-    fn fill_lists<S: Simd>(&mut self, simd: S, lights: &LightBatch<P>, area: Area) {
-        let chunks = lights.chunks();
-        grow(self.rows, chunks.len(), Row::zero);
-        let rows = &mut self.rows[..chunks.len()];
-        for y in area.min[1]..area.max[1] {
-            let down = self.tiles.down(y);
-            fill_rows(simd, chunks, down, rows);
-            for x in area.min[0]..area.max[0] {
-                let across = self.tiles.across(x);
-                let first = self.lists.slot([x - self.origin[0], y - self.origin[1]]);
-                for (interval, depths) in self.tiles.depths_of(x, y).iter().enumerate() {
-                    if *depths == NONE {
-                        self.counters.empty += 1;
-                        continue;
-                    }
-                    let start = self.lists.len();
-                    let tile = ViewBounds {
-                        across,
-                        down,
-                        depths: *depths,
-                    };
-                    if self.is_exact {
-                        let tested = append_list_exactly(simd, lights, rows, tile, self.lists);
-                        self.counters.tile_tests += tested.lights;
-                        self.counters.rejected_exactly += tested.rejected;
-                    } else {
-                        let tile = splat_tile(simd, tile);
-                        self.counters.tile_tests +=
-                            append_list(simd, lights, rows, &tile, self.lists);
-                    }
-                    self.lists.set_range(first + interval, start);
-                }
+        self.counters.block_tests += (places.len() * parts.size[0] * parts.size[1]) as u64;
+        let [columns, rows] = parts.size;
+        for row in 0..rows {
+            for column in 0..columns {
+                let places = selection.of(row * columns + column);
+                let part = cut.part(column, row);
+                self.divide(simd, places, part, selections, sizes, By::Bounds);
             }
         }
     }
+
+    /// Writes the lists of `area`.
+    fn write<S: Simd>(&mut self, simd: S, places: &[u32], area: Area) {
+        let Self {
+            scene,
+            tile_lists,
+            output,
+            counters,
+        } = self;
+        tile_lists.write(simd, scene, places, area, output, counters);
+    }
+}
+
+/// What the selection of lights needs to know of the parts of an area.
+fn parts_of(cut: Cut, tiles: &TileDepths) -> Parts {
+    let size @ [columns, rows] = cut.size();
+    let mut parts = Parts {
+        size,
+        across: Ranges::NONE,
+        down: Ranges::NONE,
+        depths: Ranges::NONE,
+    };
+    for row in 0..rows {
+        for column in 0..columns {
+            let part = cut.part(column, row);
+            let [across, down] = [0, 1].map(|i| part.min[i]..part.max[i]);
+            parts.across.set(column, tiles.columns_of(across));
+            parts.down.set(row, tiles.rows_of(down));
+            let depths = tiles.depths_of_area(part);
+            parts.depths.set(row * columns + column, depths);
+        }
+    }
+    parts
 }

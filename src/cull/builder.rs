@@ -1,7 +1,6 @@
 use core::marker::PhantomData;
-use core::ops::Range;
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, dispatch};
 use glam::Vec3;
 
 use super::LightBatch;
@@ -116,8 +115,7 @@ impl BatchBuilder {
         self.fill(KeptBounds(PhantomData), bounds, batch);
     }
 
-    /// Collects items in groups and adds them. A group begins at the next lane of the batch, so that a chunk
-    /// of it is copied as a whole unless it has empty shapes.
+    /// Collects items in groups, and adds the shapes of each group.
     fn fill<'a, I: BatchInput>(
         &self,
         input: I,
@@ -129,41 +127,26 @@ impl BatchBuilder {
             return;
         };
         let mut group = Group::splat(input, item);
-        let mut first = batch.next_lane();
-        group.set(first, light, item);
-        let mut end = first + 1;
+        group.set(0, light, item);
+        let mut count = 1;
         for (light, item) in items {
-            if end == GROUP {
-                self.flush(&mut group, first..end, batch);
-                first = batch.next_lane();
-                end = first;
+            if count == GROUP {
+                self.flush(&mut group, count, batch);
+                count = 0;
             }
-            group.set(end, light, item);
-            end += 1;
+            group.set(count, light, item);
+            count += 1;
         }
-        self.flush(&mut group, first..end, batch);
+        self.flush(&mut group, count, batch);
     }
 
-    /// Adds the items of these lanes of a group to the batch.
+    /// Adds the shapes of the first `count` items of a group to the batch.
     fn flush<I: BatchInput>(
         &self,
         group: &mut Group<I>,
-        lanes: Range<usize>,
+        count: usize,
         batch: &mut LightBatch<<I::Shape as Project>::Projected>,
     ) {
-        dispatch!(self.level, simd => project(simd, group, &lanes, &self.frame, batch));
+        dispatch!(self.level, simd => group.append_to(simd, count, &self.frame, batch));
     }
-}
-
-/// Projects the items of these lanes and adds them to the batch.
-#[inline(always)]
-fn project<S: Simd, I: BatchInput>(
-    simd: S,
-    group: &mut Group<I>,
-    lanes: &Range<usize>,
-    frame: &Frame,
-    batch: &mut LightBatch<<I::Shape as Project>::Projected>,
-) {
-    group.project(simd, lanes, frame);
-    group.append_to(batch, lanes.end);
 }

@@ -1,9 +1,10 @@
-#[cfg(feature = "rayon")]
 use alloc::vec::Vec;
 
 use fearless_simd::{Level, dispatch};
 
-use super::block::Scratch;
+use super::bins::{Bins, Blocks};
+use super::block::{BLOCK, By, Output, Scene, Scratch};
+use super::lists::Window;
 use super::{LightBatch, LightLists, TileDepths};
 use crate::base::Error;
 use crate::touch::BoxTest;
@@ -44,7 +45,13 @@ use crate::touch::BoxTest;
 pub struct Culler<P: BoxTest> {
     pub(super) level: Level,
     pub(super) use_blocks: bool,
+    /// 0, 1, 2 and so on: the places of all lights.
+    places: Vec<u32>,
+    pub(super) blocks: Blocks,
+    bins: Bins,
     pub(super) scratch: Scratch<P>,
+    #[cfg(feature = "rayon")]
+    pub(super) bins_of_threads: Vec<Bins>,
     #[cfg(feature = "rayon")]
     pub(super) workers: Vec<super::parallel::Worker<P>>,
 }
@@ -53,11 +60,13 @@ pub struct Culler<P: BoxTest> {
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CullCounters {
-    /// Tests of a light against a block of tiles. Tests of a chunk count for all its sixteen lanes.
+    /// Comparisons of the bounds of a light with those of a part of a block of tiles.
     pub block_tests: u64,
-    /// Tests of a light against a depth interval of a tile. Tests of a chunk count for all its sixteen
-    /// lanes.
+    /// Comparisons of the bounds of a light with those of a tile. Those of a chunk count for all its sixteen lanes.
     pub tile_tests: u64,
+    /// Box tests of a light against a depth interval of a tile. Those of a vector count for all its lanes, so the
+    /// number depends on the processor.
+    pub box_tests: u64,
     /// Depth intervals and whole blocks of tiles that have no surfaces and were skipped.
     pub empty: u64,
     /// Pairs of a light and a depth interval for which `touches` is true and the exact test fails. Zero without
@@ -114,7 +123,12 @@ impl<P: BoxTest> Culler<P> {
         Self {
             level,
             use_blocks: true,
+            places: Vec::new(),
+            blocks: Blocks::default(),
+            bins: Bins::default(),
             scratch: Scratch::new(),
+            #[cfg(feature = "rayon")]
+            bins_of_threads: Vec::new(),
             #[cfg(feature = "rayon")]
             workers: Vec::new(),
         }
@@ -163,8 +177,16 @@ impl<P: BoxTest> Culler<P> {
     /// ```
     #[must_use]
     pub fn with_exact_test(mut self) -> Self {
-        self.scratch.is_exact = true;
+        self.scratch.test_exactly();
         self
+    }
+
+    /// The memory in use, with what is to spare.
+    #[cfg(all(test, feature = "rayon"))]
+    pub(super) fn bytes(&self) -> usize {
+        let bins = core::iter::once(&self.bins).chain(&self.bins_of_threads);
+        let workers = self.workers.iter().map(super::parallel::Worker::bytes);
+        bins.map(Bins::bytes).sum::<usize>() + self.scratch.bytes() + workers.sum::<usize>()
     }
 
     /// Fills `lists` with the lights of `batch` that may touch each depth interval of each tile: those for
@@ -184,22 +206,49 @@ impl<P: BoxTest> Culler<P> {
         tiles: &TileDepths,
         lists: &mut LightLists,
     ) -> Result<CullCounters, Error> {
-        let (scratch, all) = (&mut self.scratch, tiles.all());
+        let all = tiles.all();
         lists.reset(all.size(), tiles.intervals() as usize);
-        scratch.begin(if self.use_blocks { all.levels() } else { 0 });
-        dispatch!(self.level, simd => scratch.cull(simd, batch, tiles, all, lists));
-        finish(scratch.counters, batch, tiles, lists)
+        self.scratch.counters = CullCounters::default();
+        let scene = Scene { batch, tiles };
+        let mut output = Output {
+            lists,
+            window: Window::all(all.size()[0]),
+        };
+        let Self {
+            places,
+            blocks,
+            bins,
+            scratch,
+            ..
+        } = self;
+        if self.use_blocks && all.exceeds(BLOCK) {
+            blocks.set(tiles);
+            dispatch!(self.level, simd => bins.fill(simd, batch, 0..batch.len(), blocks));
+            for (block, area) in blocks.areas.iter().enumerate() {
+                let places = bins.of(block);
+                dispatch!(self.level, simd => scratch.cull(simd, &scene, places, *area, By::BoundsAndBoxes, &mut output));
+            }
+        } else {
+            places.extend(places.len() as u32..batch.len() as u32);
+            let places = &places[..batch.len()];
+            let selects = self.use_blocks;
+            dispatch!(self.level, simd => if selects {
+                scratch.cull(simd, &scene, places, all, By::BoundsOfAll, &mut output);
+            } else {
+                scratch.cull_undivided(simd, &scene, places, all, &mut output);
+            });
+        }
+        finish(self.scratch.counters, tiles, lists)
     }
 }
 
 /// Finishes `lists`, and completes `counters` with the number of pairs.
-pub(super) fn finish<P: BoxTest>(
+pub(super) fn finish(
     counters: CullCounters,
-    batch: &LightBatch<P>,
     tiles: &TileDepths,
     lists: &mut LightLists,
 ) -> Result<CullCounters, Error> {
-    lists.finish(batch.room_for_a_list());
+    lists.finish();
     if u32::try_from(lists.len()).is_err() {
         lists.reset([0; 2], 0);
         return Err(Error::Size {

@@ -1,131 +1,175 @@
-//! The list of one depth interval of one tile, with the exact test.
+//! The exact test of all pairs of a light and a depth interval that pass the box test in an area.
 //!
-//! The *place* of a light is its position in the batch.
+//! The pairs of many tiles are tested side by side, since a list of one tile seldom fills a vector.
+
+use alloc::vec::Vec;
+use core::ops::Range;
 
 use fearless_simd::{Simd, SimdBase, SimdMask};
 
-use super::batch::Chunk;
-use super::lanes::{LANES, load, parts, splat_tile};
-use super::tile_list::{Row, write_touching};
-use super::{LightBatch, LightLists};
+use super::batch::grow;
+use super::block::{Output, Scene};
+use super::lanes::{
+    LANES, Record, load_lines, load_records, mask_of_first, numbers_from, write_chosen,
+};
+use super::lists::Window;
+use super::tile_depths::Area;
+use super::{LightLists, TileDepths};
 use crate::num::{F32Lanes, Single};
 use crate::touch::{BoxTest, Frustum};
 use crate::view::ViewBounds;
 
-/// Counts of the tests for one list.
-pub(super) struct Tested {
-    /// Box tests.
-    pub lights: u64,
-    /// Lights that pass the box test and fail the exact test.
-    pub rejected: u64,
+/// The memory of the exact test of an area.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ExactLists {
+    /// For each depth interval, the places of the lights that pass the box test.
+    pairs: LightLists,
+    /// The bounds of each depth interval whose list is not empty.
+    intervals: Vec<Record>,
+    /// For each pair, the index of its interval in `intervals`.
+    owners: Vec<u32>,
+    /// For each pair, whether the light touches the interval.
+    touches: Vec<bool>,
+    /// For each pair, how many pairs before it touch.
+    kept_before: Vec<u32>,
+    /// The pairs that the first step of the test leaves undecided.
+    undecided: Vec<u32>,
 }
 
-/// Appends the lights that touch `tile` by the exact test to `lists`.
-///
-/// Not inlined, so that culling without the exact test is compiled as if it did not exist.
-#[inline(never)]
-pub(super) fn append_list_exactly<S: Simd, P: BoxTest>(
-    simd: S,
-    lights: &LightBatch<P>,
-    rows: &[Row<P>],
-    tile: ViewBounds<f32>,
-    lists: &mut LightLists,
-) -> Tested {
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            let places = lists.room_for(lights.room_for_a_list());
-            let places_of = |chunk: usize, _: &Chunk<P>, part: usize| {
-                let first = (chunk * LANES + part * S::u32s::LEN) as u32;
-                S::u32s::from_slice(simd, &FIRST_PLACES[..S::u32s::LEN]) + first
-            };
-            let in_lanes = splat_tile(simd, tile);
-            let [passed, tested] = write_touching(simd, lights, rows, &in_lanes, places_of, places);
-            // Most lists are empty, and need no room for the numbers of lights.
-            let listed = match passed {
-                0 => 0,
-                _ => retain_touching(simd, lights.chunks(), tile, places, passed),
-            };
-            lists.advance(listed);
-            Tested {
-                lights: tested as u64,
-                rejected: (passed - listed) as u64,
+impl ExactLists {
+    /// Clears the pairs, to be written for the tiles of `area`.
+    pub fn begin(&mut self, area: Area, tiles: &TileDepths) -> Output<'_> {
+        self.pairs.reset(area.size(), tiles.intervals() as usize);
+        Output {
+            lists: &mut self.pairs,
+            window: Window::of(area, 0),
+        }
+    }
+
+    /// Writes the lists of the pairs that pass the exact test. Returns the number of the others.
+    #[inline(always)]
+    pub fn write<S: Simd, P: BoxTest>(
+        &mut self,
+        simd: S,
+        scene: &Scene<P>,
+        area: Area,
+        output: &mut Output,
+    ) -> u64 {
+        self.find_owners(scene.tiles, area);
+        self.test(simd, scene);
+        let (places, lights) = (self.pairs.lights(), scene.batch.lights());
+        let room = output.lists.room_for(places.len() + 1);
+        grow(&mut self.kept_before, places.len() + 1, 0);
+        let mut kept = 0;
+        for (pair, place) in places.iter().enumerate() {
+            self.kept_before[pair] = kept as u32;
+            // Overwritten by the next light unless it touches the interval.
+            room[kept] = lights[*place as usize];
+            kept += usize::from(self.touches[pair]);
+        }
+        self.kept_before[places.len()] = kept as u32;
+        let (from, intervals) = (Window::of(area, 0), scene.tiles.intervals() as usize);
+        for y in area.min[1]..area.max[1] {
+            for x in area.min[0]..area.max[0] {
+                let from = from.slot([x, y], intervals);
+                let to = output.window.slot([x, y], intervals);
+                for interval in 0..intervals {
+                    let Range { start, end } = self.pairs.range(from + interval);
+                    let [start, end] = [start, end].map(|pair| self.kept_before[pair] as usize);
+                    output.lists.set_range(to + interval, start..end);
+                }
             }
-        },
-    )
-}
-
-/// The places of the lights of the first chunk.
-const FIRST_PLACES: [u32; LANES] = {
-    let mut places = [0; LANES];
-    let mut place = 0;
-    while place < LANES {
-        places[place] = place as u32;
-        place += 1;
-    }
-    places
-};
-
-/// Replaces the first `count` of `places` by the indices of those lights that touch `tile`. Returns the
-/// number of these lights.
-#[inline(always)]
-fn retain_touching<S: Simd, P: BoxTest>(
-    simd: S,
-    chunks: &[Chunk<P>],
-    tile: ViewBounds<f32>,
-    places: &mut [u32],
-    count: usize,
-) -> usize {
-    let (mut gathered, mut end) = (Chunk::nowhere(), 0);
-    for start in (0..count).step_by(LANES) {
-        let lanes = LANES.min(count - start);
-        for (lane, place) in places[start..][..lanes].iter().enumerate() {
-            let place = *place as usize;
-            gathered.copy(lane, &chunks[place / LANES], place % LANES);
         }
-        for part in 0..parts::<S>() {
-            let wanted = ((1_u64 << lanes) - 1) >> (part * S::u32s::LEN);
-            let touching = touching(simd, &gathered, part, wanted as u32, tile);
-            let indices = &gathered.lights[part * S::u32s::LEN..][..S::u32s::LEN];
-            let chosen = S::mask32s::from_bitmask(simd, touching.into());
-            let chosen = S::u32s::from_slice(simd, indices).compress(chosen);
-            // Does not overwrite places that are still to be read.
-            chosen.store_slice(&mut places[end..end + S::u32s::LEN]);
-            end += touching.count_ones() as usize;
+        let rejected = places.len() - kept;
+        output.lists.advance(kept);
+        rejected as u64
+    }
+
+    /// Finds the interval of each pair, and the bounds of that.
+    #[inline(always)]
+    fn find_owners(&mut self, tiles: &TileDepths, area: Area) {
+        let window = Window::of(area, 0);
+        let intervals = tiles.intervals() as usize;
+        self.intervals.clear();
+        grow(&mut self.owners, self.pairs.len(), 0);
+        for y in area.min[1]..area.max[1] {
+            for x in area.min[0]..area.max[0] {
+                let first = window.slot([x, y], intervals);
+                for (interval, [near, far]) in tiles.depths_of(x, y).iter().enumerate() {
+                    let range = self.pairs.range(first + interval);
+                    if !range.is_empty() {
+                        self.owners[range].fill(self.intervals.len() as u32);
+                        let mut bounds = [0.0; LANES];
+                        let ([left, right], [bottom, top]) = (tiles.across(x), tiles.down(y));
+                        bounds[..6].copy_from_slice(&[left, right, bottom, top, *near, *far]);
+                        self.intervals.push(Record(bounds));
+                    }
+                }
+            }
         }
     }
-    end
-}
 
-/// The bits of the `wanted` lights of a part of `chunk` that touch `tile`.
-#[inline(always)]
-fn touching<S: Simd, P: BoxTest>(
-    simd: S,
-    chunk: &Chunk<P>,
-    part: usize,
-    wanted: u32,
-    tile: ViewBounds<f32>,
-) -> u32 {
-    let mut fields = P::fields_of(F32Lanes::new(simd, 0.0).widen());
-    for (field, lanes) in fields.as_mut().iter_mut().zip(chunk.fields.as_ref()) {
-        *field = load(simd, lanes, part).widen();
+    /// Finds out which pairs touch.
+    #[inline(always)]
+    fn test<S: Simd, P: BoxTest>(&mut self, simd: S, scene: &Scene<P>) {
+        let places = self.pairs.lights();
+        grow(&mut self.touches, places.len(), false);
+        grow(&mut self.undecided, places.len() + LANES, 0);
+        let mut undecided = 0;
+        for first in (0..places.len()).step_by(S::f32s::LEN) {
+            let count = S::f32s::LEN.min(places.len() - first);
+            let frustum = self.frustum(simd, scene, |lane| first + lane.min(count - 1));
+            let verdict = frustum.first_verdict();
+            let wanted = mask_of_first(simd, count);
+            let meets_or_open = wanted & !(verdict.is_separated | frustum.is_out_of_reach());
+            let touching = meets_or_open & !verdict.is_undecided;
+            let touching = touching.to_bitmask();
+            for (lane, touches) in self.touches[first..][..count].iter_mut().enumerate() {
+                *touches = touching >> lane & 1 != 0;
+            }
+            let numbers = numbers_from(simd, first);
+            let out = &mut self.undecided[undecided..];
+            undecided += write_chosen::<S>(numbers, meets_or_open & verdict.is_undecided, out);
+        }
+        for pairs in self.undecided[..undecided].chunks(S::f32s::LEN) {
+            let pair = |lane: usize| pairs[lane.min(pairs.len() - 1)] as usize;
+            let touching = self.frustum(simd, scene, pair).meets_ball();
+            let touching = touching.to_bitmask();
+            for (lane, pair) in pairs.iter().enumerate() {
+                self.touches[*pair as usize] = touching >> lane & 1 != 0;
+            }
+        }
     }
-    let frustum = Frustum::new(P::image(&fields), splat_tile(simd, tile).widen());
-    let verdict = frustum.first_verdict();
-    let misses = verdict.is_separated | frustum.is_out_of_reach();
-    let mut touching = (!(misses | verdict.is_undecided)).to_bitmask() as u32 & wanted;
-    let mut undecided = (verdict.is_undecided & !misses).to_bitmask() as u32 & wanted;
-    while undecided != 0 {
-        let lane = undecided.trailing_zeros();
-        undecided &= undecided - 1;
-        let touches = touches(chunk, part * S::u32s::LEN + lane as usize, tile);
-        touching |= u32::from(touches) << lane;
-    }
-    touching
-}
 
-/// Whether the light in `lane` of `chunk` touches `tile` by the exact test.
-#[inline(always)]
-fn touches<P: BoxTest>(chunk: &Chunk<P>, lane: usize, tile: ViewBounds<f32>) -> bool {
-    Frustum::new(P::image(&chunk.fields_of(lane)), tile.widen()).meets_ball()
+    /// The image of the interval of the pair that `pair` gives for each lane, and the ball of its light.
+    #[inline(always)]
+    fn frustum<S: Simd, P: BoxTest>(
+        &self,
+        simd: S,
+        scene: &Scene<P>,
+        pair: impl Fn(usize) -> usize,
+    ) -> Frustum<<F32Lanes<S> as Single>::Double> {
+        let (places, records) = (self.pairs.lights(), scene.batch.records());
+        let shapes = load_records::<S, P>(
+            simd,
+            #[inline(always)]
+            |lane| &records[places[pair(lane)] as usize],
+        );
+        let bounds = load_lines(
+            simd,
+            #[inline(always)]
+            |lane| &self.intervals[self.owners[pair(lane)] as usize],
+        );
+        let mut fields = P::fields_of(F32Lanes::new(simd, 0.0).widen());
+        for (field, vector) in fields.as_mut().iter_mut().zip(shapes.as_ref()) {
+            *field = vector.widen();
+        }
+        let [left, right, bottom, top, near, far, ..] = bounds;
+        let tile = ViewBounds {
+            across: [left, right],
+            down: [bottom, top],
+            depths: [near, far],
+        };
+        Frustum::new(P::image(&fields), tile.widen())
+    }
 }

@@ -4,14 +4,12 @@
 //! scalar functions run for one light, so the results have the same bits.
 
 use core::marker::PhantomData;
-use core::ops::Range;
 
-use fearless_simd::{Simd, SimdBase, SimdMask};
+use fearless_simd::{Simd, SimdBase};
 use glam::Vec3;
 
 use super::LightBatch;
-use super::batch::Chunk;
-use super::lanes::{LANES, parts, store};
+use super::lanes::{LANES, Record, mask_of_first, store_records};
 use crate::bound::{BoundStrategy, MAX_QUADS, Quads, Shape, ShapeLanes};
 use crate::light::{Roulette, Vpl, Xi};
 use crate::lobe::Lobe;
@@ -165,10 +163,8 @@ pub(super) struct Frame {
     pub camera: Camera,
 }
 
-/// The number of chunks of a group. The processor can begin one while another waits for its roots.
-const CHUNKS: usize = u64::BITS as usize / LANES;
-/// The number of lights of a group: the bits of a `u64`.
-pub(super) const GROUP: usize = CHUNKS * LANES;
+/// The number of lights of a group.
+pub(super) const GROUP: usize = 4 * LANES;
 
 /// A group of lights, and the projected shapes that are computed from them.
 #[repr(C, align(64))]
@@ -180,17 +176,8 @@ pub(super) struct Group<I: BatchInput> {
     parameters: [f32; GROUP],
     per_light: [I::PerLight; GROUP],
     lights: [u32; GROUP],
-    projected: [ProjectedChunk<<I::Shape as Project>::Projected>; CHUNKS],
-}
-
-/// The projected shapes of sixteen lights.
-#[derive(Clone, Copy)]
-struct ProjectedChunk<P: Projected> {
-    chunk: Chunk<P>,
-    /// The bits of the lights whose shape is not empty.
-    non_empty: u32,
-    /// The range of depths that these lights reach.
-    reach: [f32; 2],
+    /// The projected shapes of a vector.
+    records: [Record; LANES],
 }
 
 impl<I: BatchInput> Group<I> {
@@ -207,11 +194,6 @@ impl<I: BatchInput> Group<I> {
         for (lanes, quad) in quads[..I::QUADS].iter_mut().zip(item_quads) {
             *lanes = [quad; GROUP];
         }
-        let none = ProjectedChunk {
-            chunk: Chunk::nowhere(),
-            non_empty: 0,
-            reach: [0.0; 2],
-        };
         Self {
             input,
             placements: [[p.x, p.y, p.z, flux]; GROUP],
@@ -219,7 +201,7 @@ impl<I: BatchInput> Group<I> {
             parameters: [parameter; GROUP],
             per_light: [per_light; GROUP],
             lights: [0; GROUP],
-            projected: [none; CHUNKS],
+            records: [Record([0.0; LANES]); LANES],
         }
     }
 
@@ -242,59 +224,50 @@ impl<I: BatchInput> Group<I> {
         self.lights[lane] = light;
     }
 
-    /// Computes the shapes of `lanes`, of which there is at least one.
+    /// Projects the first `count` items, of which there is at least one, and adds the shapes that are not empty
+    /// to `batch`.
     #[inline(always)]
-    pub fn project<S: Simd>(&mut self, simd: S, lanes: &Range<usize>, frame: &Frame) {
-        // Bit 0 is the first lane.
-        let wanted = (u64::MAX >> (GROUP - lanes.end)) & (u64::MAX << lanes.start);
-        for chunk in 0..lanes.end.div_ceil(LANES) {
-            self.project_chunk(simd, chunk, wanted, frame);
+    pub fn append_to<S: Simd>(
+        &mut self,
+        simd: S,
+        count: usize,
+        frame: &Frame,
+        batch: &mut LightBatch<<I::Shape as Project>::Projected>,
+    ) {
+        // The processor can begin one vector while another waits for its roots.
+        for first in (0..count).step_by(S::f32s::LEN) {
+            let wanted = mask_of_first(simd, count - first);
+            let (fields, reaches) = self.project(simd, first, frame);
+            let records = &mut self.records[..S::f32s::LEN];
+            store_records::<S, <I::Shape as Project>::Projected>(simd, &fields, records);
+            batch.append(
+                simd,
+                wanted & reaches,
+                &self.lights[first..],
+                &fields,
+                records,
+            );
         }
     }
 
-    /// Computes the shapes of one chunk. Those whose bits are not set in `wanted` count as empty.
+    /// Projects a vector of items. Returns the fields of the shapes, and which of them are not empty.
     #[inline(always)]
-    fn project_chunk<S: Simd>(&mut self, simd: S, chunk: usize, wanted: u64, frame: &Frame) {
-        let mut nearest = F32Lanes::new(simd, f32::INFINITY);
-        let mut farthest = F32Lanes::new(simd, f32::NEG_INFINITY);
-        let projected = &mut self.projected[chunk];
-        projected.non_empty = 0;
-        for part in 0..parts::<S>() {
-            let first = chunk * LANES + part * S::f32s::LEN;
-            let lanes = first..first + S::f32s::LEN;
-            let [x, y, z, flux] = load_quads(simd, &self.placements[lanes.clone()]);
-            let mut quads = [[F32Lanes::new(simd, 0.0); 4]; MAX_QUADS];
-            for (vectors, quads) in quads[..I::QUADS].iter_mut().zip(&self.quads) {
-                *vectors = load_quads(simd, &quads[lanes.clone()]);
-            }
-            let parameter = flux.load(&self.parameters[lanes.clone()]);
-            let scale = I::scale(&frame.roulette, flux, parameter);
-            let unit = self.input.unit_bounds(&quads, &self.per_light[lanes]);
-            let reaches = !unit.is_empty() & scale.is_positive();
-            let placed = unit.placed(Vector3::new(x, y, z), scale);
-            let fields = I::Shape::project_lanes(placed, &frame.camera);
-            let chunk_fields = projected.chunk.fields.as_mut().iter_mut();
-            for (lanes, vector) in chunk_fields.zip(fields.as_ref()) {
-                store(lanes, part, *vector);
-            }
-
-            let wanted = (wanted >> first) & ((1 << S::f32s::LEN) - 1);
-            let non_empty = reaches & S::mask32s::from_bitmask(simd, wanted);
-            let [near, far] = <I::Shape as Project>::Projected::bounds_of(&fields).depths;
-            nearest = F32Lanes::select(non_empty, nearest.min(near), nearest);
-            farthest = F32Lanes::select(non_empty, farthest.max(far), farthest);
-            projected.non_empty |= (non_empty.to_bitmask() as u32) << (part * S::f32s::LEN);
+    fn project<S: Simd>(&self, simd: S, first: usize, frame: &Frame) -> (Fields<I, S>, S::mask32s) {
+        let lanes = first..first + S::f32s::LEN;
+        let [x, y, z, flux] = load_quads(simd, &self.placements[lanes.clone()]);
+        let mut quads = [[F32Lanes::new(simd, 0.0); 4]; MAX_QUADS];
+        for (vectors, quads) in quads[..I::QUADS].iter_mut().zip(&self.quads) {
+            *vectors = load_quads(simd, &quads[lanes.clone()]);
         }
-        projected.reach = [nearest.0.reduce_min(), farthest.0.reduce_max()];
-        let lights = &self.lights[chunk * LANES..][..LANES];
-        projected.chunk.lights.copy_from_slice(lights);
-    }
-
-    /// Adds the shapes of the lanes before `end` that are not empty to `batch`.
-    #[inline(always)]
-    pub fn append_to(&self, batch: &mut LightBatch<<I::Shape as Project>::Projected>, end: usize) {
-        for projected in &self.projected[..end.div_ceil(LANES)] {
-            batch.append(&projected.chunk, projected.non_empty, projected.reach);
-        }
+        let parameter = flux.load(&self.parameters[lanes.clone()]);
+        let scale = I::scale(&frame.roulette, flux, parameter);
+        let unit = self.input.unit_bounds(&quads, &self.per_light[lanes]);
+        let reaches = !unit.is_empty() & scale.is_positive();
+        let placed = unit.placed(Vector3::new(x, y, z), scale);
+        (I::Shape::project_lanes(placed, &frame.camera), reaches)
     }
 }
+
+/// The fields of the projected shapes of a vector of items.
+type Fields<I, S> =
+    <<<I as BatchInput>::Shape as Project>::Projected as Projected>::Fields<F32Lanes<S>>;

@@ -1,4 +1,10 @@
 use alloc::vec::Vec;
+use core::ops::Range;
+
+use fearless_simd::{Simd, SimdBase};
+
+use super::lanes::LANES;
+use super::tile_depths::Area;
 
 /// For each depth interval of each tile, the indices of the lights that may touch it.
 ///
@@ -111,29 +117,39 @@ impl LightLists {
         self.ranges.resize(columns * rows * intervals, [0; 2]);
     }
 
-    /// Appends `lists`, which are of `area` alone, to these, which are of the whole grid.
+    /// Appends `lists`, which are of the tiles of `areas`, one after the other, to these, which are of the whole
+    /// grid.
     #[cfg(feature = "rayon")]
-    pub(super) fn append(&mut self, area: super::tile_depths::Area, lists: &Self) {
+    pub(super) fn append(&mut self, areas: &[Area], lists: &Self) {
         let start = self.len;
         self.room_for(lists.len)[..lists.len].copy_from_slice(lists.lights());
-        self.advance(lists.len);
-        for (y, row) in lists
-            .ranges
-            .chunks(lists.columns * lists.intervals)
-            .enumerate()
-        {
-            let first = self.slot([area.min[0], area.min[1] + y]);
-            for (range, moved) in row.iter().zip(&mut self.ranges[first..]) {
-                if range[0] < range[1] {
-                    *moved = range.map(|end| (start + end as usize) as u32);
+        self.len += lists.len;
+        let window = Window::all(self.columns);
+        let mut ranges = &lists.ranges[..];
+        for area in areas {
+            for y in area.min[1]..area.max[1] {
+                let (row, rest) = ranges.split_at(area.size()[0] * self.intervals);
+                ranges = rest;
+                let first = window.slot([area.min[0], y], self.intervals);
+                for (range, moved) in row.iter().zip(&mut self.ranges[first..]) {
+                    if range[0] < range[1] {
+                        *moved = range.map(|end| (start + end as usize) as u32);
+                    }
                 }
             }
         }
     }
 
-    /// The slot of the first depth interval of a tile: its index in `ranges`.
-    pub(super) fn slot(&self, [x, y]: [usize; 2]) -> usize {
-        (y * self.columns + x) * self.intervals
+    /// The memory in use, with what is to spare.
+    #[cfg(all(test, feature = "rayon"))]
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.ranges[..]) + size_of_val(&self.lights[..])
+    }
+
+    /// The range of the list of `slot` in `lights`.
+    pub(super) fn range(&self, slot: usize) -> Range<usize> {
+        let [start, end] = self.ranges[slot].map(|n| n as usize);
+        start..end
     }
 
     /// The part of `lights` that is not in use, at least `count` long.
@@ -146,25 +162,81 @@ impl LightLists {
         &mut self.lights[self.len..]
     }
 
-    /// Reserves room for half as many lights again and for a list of `longest` lights, if the lists grew. So
-    /// frames after the first seldom allocate.
-    pub(super) fn finish(&mut self, longest: usize) {
+    /// Reserves room for half as many lights again if the lists grew. So frames after the first seldom allocate.
+    pub(super) fn finish(&mut self) {
         if self.has_grown {
-            self.room_for(self.len / 2 + longest);
+            self.room_for(self.len / 2 + LANES);
             self.has_grown = false;
         }
     }
 
+    /// Appends the list of `slot`: the first `len` of `lights`, which is longer than that by a vector.
+    #[inline(always)]
+    pub(super) fn append_list<S: Simd>(
+        &mut self,
+        simd: S,
+        slot: usize,
+        lights: &[u32],
+        len: usize,
+    ) {
+        let room = self.room_for(len + S::u32s::LEN);
+        // A call to copy so few takes longer than this loop.
+        for start in (0..len).step_by(S::u32s::LEN) {
+            let vector = S::u32s::from_slice(simd, &lights[start..][..S::u32s::LEN]);
+            vector.store_slice(&mut room[start..][..S::u32s::LEN]);
+        }
+        self.set_range(slot, 0..len);
+        self.advance(len);
+    }
+
+    /// Sets the list of `slot` to this range of the elements that are not in use.
+    #[inline(always)]
+    pub(super) fn set_range(&mut self, slot: usize, range: Range<usize>) {
+        // An empty list is [0, 0], so that it does not depend on the lists before it.
+        if !range.is_empty() {
+            self.ranges[slot] = [range.start, range.end].map(|end| (self.len + end) as u32);
+        }
+    }
+
     /// Adds the first `count` elements that are not in use to the lists.
+    #[inline(always)]
     pub(super) fn advance(&mut self, count: usize) {
         self.len += count;
     }
+}
 
-    /// Sets the list of `slot` to begin at `start` and to end here. An empty list is \[0, 0\], so that
-    /// it does not depend on which tests were skipped.
-    pub(super) fn set_range(&mut self, slot: usize, start: usize) {
-        let range = [start as u32, self.len as u32];
-        self.ranges[slot] = if start < self.len { range } else { [0; 2] };
+/// Where lists hold the tiles of an area: row by row, the depth intervals of each tile side by side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Window {
+    /// The slot of the first tile.
+    first: usize,
+    /// The first tile, \[column, row\].
+    min: [usize; 2],
+    columns: usize,
+}
+
+impl Window {
+    /// The whole of a grid with so many columns.
+    pub fn all(columns: usize) -> Self {
+        Self {
+            first: 0,
+            min: [0; 2],
+            columns,
+        }
+    }
+
+    /// The tiles of `area` from slot `first` on.
+    pub fn of(area: Area, first: usize) -> Self {
+        Self {
+            first,
+            min: area.min,
+            columns: area.size()[0],
+        }
+    }
+
+    /// The slot of the first depth interval of a tile: its index in `ranges`.
+    pub fn slot(&self, [x, y]: [usize; 2], intervals: usize) -> usize {
+        self.first + ((y - self.min[1]) * self.columns + x - self.min[0]) * intervals
     }
 }
 

@@ -1,22 +1,33 @@
-//! Culling on many cores: threads cull blocks of tiles, and their lists are concatenated.
+//! Culling on many cores: threads sort shares of the lights into blocks of tiles, then cull shares of the blocks.
+//! Their lists are concatenated.
+
+use alloc::vec::Vec;
+use core::ops::Range;
 
 use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
-use super::block::Scratch;
+use super::bins::{Bins, Blocks};
+use super::block::{BLOCK, By, Output, Scene, Scratch};
 use super::culler::finish;
-use super::tile_depths::Area;
+use super::lists::Window;
 use super::{CullCounters, Culler, LightBatch, LightLists, TileDepths};
 use crate::base::Error;
 use crate::touch::BoxTest;
 
-/// The memory and the lists of one block of tiles.
+/// The memory and the lists of some of the blocks.
 #[derive(Clone, Debug)]
 pub(super) struct Worker<P: BoxTest> {
-    area: Area,
+    blocks: Range<usize>,
+    /// The places of the lights of one block.
+    places: Vec<u32>,
     scratch: Scratch<P>,
+    /// The tiles of the first block come first.
     lists: LightLists,
 }
+
+/// The number of workers for each thread. With several, threads end at about the same time though blocks differ.
+const WORKERS_PER_THREAD: usize = 4;
 
 impl<P: BoxTest + Send + Sync> Culler<P> {
     /// Does what [`cull`](Self::cull) does on the threads of rayon's current pool. The lists are the same, in
@@ -59,62 +70,98 @@ impl<P: BoxTest + Send + Sync> Culler<P> {
         lists: &mut LightLists,
     ) -> Result<CullCounters, Error> {
         let all = tiles.all();
-        let levels = if self.use_blocks { all.levels() } else { 0 };
-        let Some(levels) = levels.checked_sub(2) else {
+        if !self.use_blocks || !all.exceeds(BLOCK) {
             return self.cull(batch, tiles, lists);
-        };
-        let areas = all.subdivide().flat_map(Area::subdivide);
-        let count = self.fill_workers(areas, levels + 1);
-        let workers = &mut self.workers[..count];
-        let (level, is_exact) = (self.level, self.scratch.is_exact);
-        workers.par_iter_mut().for_each(|worker| {
-            worker.scratch.is_exact = is_exact;
-            worker.cull(level, batch, tiles);
+        }
+        self.blocks.set(tiles);
+        let (level, blocks) = (self.level, &self.blocks);
+
+        let threads = rayon::current_num_threads();
+        let share = batch.len().div_ceil(threads);
+        self.bins_of_threads.resize_with(threads, Bins::default);
+        let bins = self.bins_of_threads.par_iter_mut().enumerate();
+        bins.for_each(|(thread, bins)| {
+            let lights = (thread * share).min(batch.len())..((thread + 1) * share).min(batch.len());
+            dispatch!(level, simd => bins.fill(simd, batch, lights, blocks));
         });
+        let bins = &self.bins_of_threads[..];
+
+        let share = blocks.areas.len().div_ceil(WORKERS_PER_THREAD * threads);
+        let count = blocks.areas.len().div_ceil(share);
+        let new_worker = || Worker::new(&self.scratch);
+        self.workers
+            .resize_with(count.max(self.workers.len()), new_worker);
+        let workers = &mut self.workers[..count];
+        let scene = Scene { batch, tiles };
+        workers
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(index, worker)| {
+                worker.blocks = index * share..((index + 1) * share).min(blocks.areas.len());
+                worker.cull(level, &scene, blocks, bins);
+            });
+
         lists.reset(all.size(), tiles.intervals() as usize);
         let mut counters = CullCounters::default();
         for worker in workers {
-            lists.append(worker.area, &worker.lists);
-            counters.block_tests += worker.scratch.counters.block_tests;
-            counters.tile_tests += worker.scratch.counters.tile_tests;
-            counters.empty += worker.scratch.counters.empty;
-            counters.rejected_exactly += worker.scratch.counters.rejected_exactly;
+            lists.append(&blocks.areas[worker.blocks.clone()], &worker.lists);
+            counters.add(&worker.scratch.counters);
         }
-        finish(counters, batch, tiles, lists)
+        finish(counters, tiles, lists)
     }
+}
 
-    /// Assigns each of `areas`, which are to be subdivided `levels` times, to a worker. Returns their number.
-    fn fill_workers(&mut self, areas: impl Iterator<Item = Area>, levels: usize) -> usize {
-        let mut count = 0;
-        for area in areas {
-            if count == self.workers.len() {
-                self.workers.push(Worker {
-                    area,
-                    scratch: Scratch::new(),
-                    lists: LightLists::new(),
-                });
-            }
-            let worker = &mut self.workers[count];
-            worker.area = area;
-            worker.scratch.begin(levels);
-            count += 1;
-        }
-        count
+impl CullCounters {
+    /// Adds the counts of another part of the work.
+    fn add(&mut self, other: &Self) {
+        self.block_tests += other.block_tests;
+        self.tile_tests += other.tile_tests;
+        self.box_tests += other.box_tests;
+        self.empty += other.empty;
+        self.rejected_exactly += other.rejected_exactly;
     }
 }
 
 impl<P: BoxTest> Worker<P> {
-    /// Fills the lists of the area.
-    fn cull(&mut self, level: Level, batch: &LightBatch<P>, tiles: &TileDepths) {
-        let Self {
-            area,
-            scratch,
-            lists,
-        } = self;
-        lists.reset(area.size(), tiles.intervals() as usize);
-        dispatch!(level, simd => scratch.cull(simd, batch, tiles, *area, lists));
-        // Not room for a longest list, which each of many workers would have.
-        lists.finish(0);
+    /// Creates a worker that tests as `scratch` does.
+    fn new(scratch: &Scratch<P>) -> Self {
+        Self {
+            blocks: 0..0,
+            places: Vec::new(),
+            scratch: scratch.with_same_tests(),
+            lists: LightLists::new(),
+        }
+    }
+
+    /// The memory in use, with what is to spare.
+    #[cfg(test)]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.places[..]) + self.scratch.bytes() + self.lists.bytes()
+    }
+
+    /// Writes the lists of the worker's blocks.
+    fn cull(&mut self, level: Level, scene: &Scene<P>, blocks: &Blocks, bins: &[Bins]) {
+        let areas = &blocks.areas[self.blocks.clone()];
+        let tiles = areas.iter().map(|area| area.len()).sum();
+        let intervals = scene.tiles.intervals() as usize;
+        self.lists.reset([tiles, 1], intervals);
+        self.scratch.counters = CullCounters::default();
+        let (lists, scratch) = (&mut self.lists, &mut self.scratch);
+        let mut first = 0;
+        for (block, area) in self.blocks.clone().zip(areas) {
+            self.places.clear();
+            for bins in bins {
+                self.places.extend_from_slice(bins.of(block));
+            }
+            let mut output = Output {
+                lists,
+                window: Window::of(*area, first),
+            };
+            let places = &self.places;
+            dispatch!(level, simd => scratch.cull(simd, scene, places, *area, By::BoundsAndBoxes, &mut output));
+            first += area.len() * intervals;
+        }
+        self.lists.finish();
     }
 }
 
@@ -127,9 +174,9 @@ mod tests {
     use crate::project::ProjectedSphere;
     use crate::view::{Camera, DepthInterval, TileRectangle};
 
-    /// The workers together need little more room than one culler, though they are many.
+    /// The workers have a share of the lights each, so that many need little more memory than one culler.
     #[test]
-    fn workers_have_a_share_of_the_lights() {
+    fn many_workers_take_at_most_twice_the_memory_of_one_culler() {
         let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.5, 1.0, 0.1..100.0);
         let camera = camera.expect("in range");
         let mut batch = LightBatch::<ProjectedSphere>::new();
@@ -160,19 +207,13 @@ mod tests {
         let [mut lists, mut lists_of_many] = [LightLists::new(), LightLists::new()];
         let counters = one.cull(&batch, &tiles, &mut lists);
         assert!(counters.expect("few").pairs > 0);
-        let counters = many.cull_in_parallel(&batch, &tiles, &mut lists_of_many);
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(8).build();
+        let counters = (threads.expect("few"))
+            .install(|| many.cull_in_parallel(&batch, &tiles, &mut lists_of_many));
         counters.expect("few");
         assert!(lists == lists_of_many);
-        let room: usize = many
-            .workers
-            .iter()
-            .map(|worker| worker.scratch.chunks())
-            .sum();
-        assert!(many.workers.len() > 50);
-        assert!(
-            room < 2 * one.scratch.chunks(),
-            "{room} chunks, {}",
-            one.scratch.chunks()
-        );
+        let serial = batch.bytes() + one.bytes() + lists.bytes();
+        let parallel = batch.bytes() + many.bytes() + lists_of_many.bytes();
+        assert!(parallel < 2 * serial, "{parallel} bytes, {serial}");
     }
 }

@@ -1,7 +1,7 @@
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use crate::base::Error;
-use crate::view::ViewBounds;
 use crate::view::{Camera, DepthInterval, TileGrid, TileRectangle};
 
 /// A grid of tiles, and for each tile one or more depth intervals that hold its surfaces.
@@ -42,9 +42,6 @@ pub struct TileDepths {
 const MAX_TILES_IN_A_ROW: u32 = 1 << 16;
 /// Upper limit of the depth intervals of all tiles. A vector can hold as many if pointers have 32 bits.
 const MAX_SLOTS: u64 = 1 << 27;
-/// A block of at most so many tiles, in each direction, is not subdivided.
-const MAX_UNDIVIDED: usize = 5;
-
 /// The interval of no depths, which ends before it begins.
 pub(super) const NONE: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
@@ -246,31 +243,46 @@ impl TileDepths {
         &self.depths[first..][..self.intervals]
     }
 
-    /// The bounds that hold those of all tiles of `area`. `None` if no tile has depths.
-    pub(super) fn bounds_of(&self, area: Area) -> Option<ViewBounds<f32>> {
-        let [columns, rows] = [0, 1].map(|i| area.min[i]..area.max[i]);
+    /// The depths of all intervals of the tile at column `x` and row `y`.
+    pub(super) fn hull(&self, x: usize, y: usize) -> [f32; 2] {
+        self.hulls[y * self.columns.len() + x]
+    }
+
+    /// The slopes x/z of these columns.
+    pub(super) fn columns_of(&self, columns: Range<usize>) -> [f32; 2] {
+        self.columns[columns].iter().copied().fold(NONE, hull_of)
+    }
+
+    /// The slopes y/z of these rows.
+    pub(super) fn rows_of(&self, rows: Range<usize>) -> [f32; 2] {
+        self.rows[rows].iter().copied().fold(NONE, hull_of)
+    }
+
+    /// The depths of all tiles of `area`.
+    pub(super) fn depths_of_area(&self, area: Area) -> [f32; 2] {
         let mut depths = NONE;
-        for y in rows.clone() {
+        for y in area.min[1]..area.max[1] {
             let first = y * self.columns.len();
-            let row = &self.hulls[first + columns.start..first + columns.end];
-            depths = row.iter().copied().fold(depths, hull_of);
+            for tile in &self.hulls[first + area.min[0]..first + area.max[0]] {
+                depths = hull_of(depths, *tile);
+            }
         }
-        let across = self.columns[columns].iter().copied();
-        let down = self.rows[rows].iter().copied();
-        (depths != NONE).then(|| ViewBounds {
-            across: across.fold(NONE, hull_of),
-            down: down.fold(NONE, hull_of),
-            depths,
-        })
+        depths
     }
 }
 
+/// Whether `depths` is [`NONE`]. Any other interval ends where it begins, or later.
+#[inline(always)]
+pub(super) fn is_none([near, far]: [f32; 2]) -> bool {
+    near > far
+}
+
 /// The smallest range that holds both. Faster than `f32::min` and `f32::max`, since there is no NaN here.
-fn hull_of(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
-    [
-        if b[0] < a[0] { b[0] } else { a[0] },
-        if b[1] > a[1] { b[1] } else { a[1] },
-    ]
+#[inline(always)]
+pub(super) fn hull_of([near, far]: [f32; 2], other: [f32; 2]) -> [f32; 2] {
+    let near = if other[0] < near { other[0] } else { near };
+    let far = if other[1] > far { other[1] } else { far };
+    [near, far]
 }
 
 /// A rectangle of tiles, from `min` (inclusive) to `max` (exclusive), each \[column, row\].
@@ -285,40 +297,50 @@ impl Area {
         [0, 1].map(|i| self.max[i] - self.min[i])
     }
 
-    pub fn is_all_of(self, tiles: &TileDepths) -> bool {
-        self.size() == tiles.all().size()
+    /// Whether there are more than `longest` tiles in a row or in a column.
+    pub fn exceeds(self, longest: usize) -> bool {
+        self.size().iter().any(|tiles| *tiles > longest)
     }
 
-    /// The number of times that the area is subdivided until its parts have few tiles.
-    pub fn levels(self) -> usize {
-        let mut levels = 0;
-        let mut size = self.size();
-        while size.iter().any(|n| *n > MAX_UNDIVIDED) {
-            levels += 1;
-            size = size.map(part_len);
-        }
-        levels
+    /// The number of tiles.
+    #[cfg(feature = "rayon")]
+    pub fn len(self) -> usize {
+        let [columns, rows] = self.size();
+        columns * rows
     }
 
-    /// Iterates over at most 3×3 parts of the area, row by row.
-    pub fn subdivide(self) -> impl Iterator<Item = Self> {
-        let part = self.size().map(part_len);
-        let cuts = move |i: usize| {
-            (self.min[i]..self.max[i])
-                .step_by(part[i])
-                .map(move |min| [min, (min + part[i]).min(self.max[i])])
-        };
-        cuts(1).flat_map(move |[top, bottom]| {
-            cuts(0).map(move |[left, right]| Self {
-                min: [left, top],
-                max: [right, bottom],
-            })
-        })
+    /// Cuts the area into parts of about the same size. Each has at most `longest` tiles in a row and in a column.
+    pub fn cut(self, longest: usize) -> Cut {
+        let part = self
+            .size()
+            .map(|tiles| tiles.div_ceil(tiles.div_ceil(longest)));
+        Cut { area: self, part }
     }
 }
 
-/// The length of the parts of `tiles` tiles in a row. There are at most three parts, and only as many as make
-/// each at most [`MAX_UNDIVIDED`] long.
-fn part_len(tiles: usize) -> usize {
-    tiles.div_ceil(tiles.div_ceil(MAX_UNDIVIDED).min(3))
+/// An area that is cut into parts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut {
+    area: Area,
+    /// The size of all parts but the last ones.
+    part: [usize; 2],
+}
+
+impl Cut {
+    /// The number of parts, \[columns, rows\].
+    pub fn size(&self) -> [usize; 2] {
+        let [columns, rows] = self.area.size();
+        [columns.div_ceil(self.part[0]), rows.div_ceil(self.part[1])]
+    }
+
+    /// A part, by its column and row.
+    #[inline]
+    pub fn part(&self, column: usize, row: usize) -> Area {
+        let ([width, height], Area { min, max }) = (self.part, self.area);
+        let min = [min[0] + column * width, min[1] + row * height];
+        Area {
+            min,
+            max: [(min[0] + width).min(max[0]), (min[1] + height).min(max[1])],
+        }
+    }
 }

@@ -198,6 +198,11 @@ impl<S: Simd> Real for F32Lanes<S> {
     fn is_known_false(_: S::mask32s) -> bool {
         false
     }
+
+    #[inline(always)]
+    fn any(mask: S::mask32s) -> bool {
+        mask.any_true()
+    }
 }
 
 impl<S: Simd> Real for F64Lanes<S> {
@@ -293,6 +298,11 @@ impl<S: Simd> Real for F64Lanes<S> {
     #[inline(always)]
     fn is_known_false(_: S::mask32s) -> bool {
         false
+    }
+
+    #[inline(always)]
+    fn any(mask: S::mask32s) -> bool {
+        mask.any_true()
     }
 }
 

@@ -66,6 +66,9 @@ pub trait Real:
     /// Always false for a vector.
     fn is_known_false(mask: Self::Mask) -> bool;
 
+    /// Whether `mask` holds in a lane.
+    fn any(mask: Self::Mask) -> bool;
+
     /// `yes` where `mask` holds, `no` elsewhere.
     #[inline(always)]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {

@@ -67,6 +67,11 @@ macro_rules! real {
             fn is_known_false(mask: bool) -> bool {
                 !mask
             }
+
+            #[inline(always)]
+            fn any(mask: bool) -> bool {
+                mask
+            }
         }
     };
 }

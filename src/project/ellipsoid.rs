@@ -120,9 +120,9 @@ pub fn stretch_rotation(stretch: Mat3) -> Mat3 {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProjectedEllipsoid {
-    matrix: Mat3,
-    center: Vec3,
-    bounds: ViewBounds<f32>,
+    /// M₁₁, M₁₂, M₁₃, M₂₁, M₂₂, M₂₃, m, Mc′, and the bounds of x/z, of y/z and of z: in the layout of a batch, so
+    /// that one is copied as a whole.
+    fields: [f32; FIELDS],
 }
 
 /// The number of fields of a projected ellipsoid.
@@ -133,13 +133,19 @@ impl ProjectedEllipsoid {
     /// M₂₁ is zero.
     #[must_use]
     pub fn matrix(&self) -> Mat3 {
-        self.matrix
+        let [m_11, m_12, m_13, m_21, m_22, m_23, m, ..] = self.fields;
+        Mat3::from_cols(
+            Vec3::new(m_11, m_21, 0.0),
+            Vec3::new(m_12, m_22, 0.0),
+            Vec3::new(m_13, m_23, m),
+        )
     }
 
     /// Mc′, the centre of the unit sphere.
     #[must_use]
     pub fn center(&self) -> Vec3 {
-        self.center
+        let [.., x, y, z, _, _, _, _, _, _] = self.fields;
+        Vec3::new(x, y, z)
     }
 }
 
@@ -273,7 +279,6 @@ fn triangular_stretch<N: Real>(axes: Matrix3<N>, semi_axes: Vector3<N>) -> [N; 7
 }
 
 impl Projected for ProjectedEllipsoid {
-    /// M₁₁, M₁₂, M₁₃, M₂₁, M₂₂, M₂₃, m, Mc′, and the bounds of x/z, of y/z and of z.
     type Fields<T: Field> = [T; FIELDS];
 
     /// The bounds hold nothing.
@@ -290,29 +295,12 @@ impl Projected for ProjectedEllipsoid {
 
     #[inline(always)]
     fn to_fields(&self) -> [f32; FIELDS] {
-        let (m, c) = (&self.matrix, self.center);
-        let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
-        let [left, right] = self.bounds.across;
-        let [bottom, top] = self.bounds.down;
-        let [near, far] = self.bounds.depths;
-        [
-            x.x, y.x, z.x, x.y, y.y, z.y, z.z, c.x, c.y, c.z, left, right, bottom, top, near, far,
-        ]
+        self.fields
     }
 
     #[inline(always)]
     fn from_fields(fields: [f32; FIELDS]) -> Self {
-        let [m_11, m_12, m_13, m_21, m_22, m_23, m, x, y, z, ..] = fields;
-        let matrix = Mat3::from_cols(
-            Vec3::new(m_11, m_21, 0.0),
-            Vec3::new(m_12, m_22, 0.0),
-            Vec3::new(m_13, m_23, m),
-        );
-        Self {
-            matrix,
-            center: Vec3::new(x, y, z),
-            bounds: Self::bounds_of(&fields),
-        }
+        Self { fields }
     }
 
     #[inline(always)]

@@ -11,7 +11,7 @@ mod spheroid;
 
 pub use ellipsoid::{ProjectedEllipsoid, stretch_matrix, stretch_rotation};
 pub use half_space::ProjectedHalfSpace;
-pub(crate) use projected::Field;
+
 pub use projected::Projected;
 pub use sphere::ProjectedSphere;
 

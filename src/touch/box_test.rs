@@ -15,31 +15,23 @@
 use super::TileTest;
 use super::frustum::Image;
 use crate::num::{Double, Real, Single};
-use crate::project::{Field, Projected, ProjectedEllipsoid, ProjectedSphere};
-use crate::view::ViewBounds;
+use crate::project::{Projected, ProjectedEllipsoid, ProjectedSphere};
+
+/// The bounding rectangle of the image of a tile's rectangle at depth 1: the least and the greatest x, and y.
+pub type Outline<N> = [N; 4];
 
 /// A projected shape that a `Culler` can test: [`ProjectedEllipsoid`] or [`ProjectedSphere`].
 pub trait BoxTest: Projected + TileTest {
-    /// Intermediate results that are the same for all tiles of a row of the grid.
+    /// Computes the outline of the tiles with the slopes x/z = `across` and y/z = `down`: the bounding rectangle
+    /// of their image at depth 1, which all their depth intervals share.
     #[doc(hidden)]
-    type Row<T: Field>: Field + AsRef<[T]> + AsMut<[T]>;
+    fn outline<N: Single>(fields: &Self::Fields<N>, across: [N; 2], down: [N; 2]) -> Outline<N>;
 
-    /// `value` in each component of a row.
+    /// Whether the shape, whose bounds touch a tile with this outline and these depths, misses the bounding box
+    /// of the tile's image at the depths that both have. False if an overflow makes NaN.
     #[doc(hidden)]
-    fn row_of<T: Field>(value: T) -> Self::Row<T>;
-
-    /// Computes the intermediate results for the row of tiles with the slopes y/z = `down`.
-    #[doc(hidden)]
-    fn row<N: Single>(fields: &Self::Fields<N>, down: [N; 2]) -> Self::Row<N>;
-
-    /// Whether the shape, whose bounds touch `tile`, misses the bounding box of the tile's image at the depths
-    /// that both have. False if an overflow makes NaN.
-    #[doc(hidden)]
-    fn misses<N: Single>(
-        fields: &Self::Fields<N>,
-        row: &Self::Row<N>,
-        tile: &ViewBounds<N>,
-    ) -> N::Mask;
+    fn misses<N: Single>(fields: &Self::Fields<N>, outline: &Outline<N>, depths: [N; 2])
+    -> N::Mask;
 
     /// The shape in the form that the exact test takes.
     #[doc(hidden)]
@@ -47,28 +39,24 @@ pub trait BoxTest: Projected + TileTest {
 }
 
 impl BoxTest for ProjectedEllipsoid {
-    /// M₁₂y + M₁₃ and M₂₂y + M₂₃, each as \[least, greatest\].
-    type Row<T: Field> = [T; 4];
-
-    fn row_of<T: Field>(value: T) -> [T; 4] {
-        [value; 4]
-    }
-
     #[inline(always)]
-    fn row<N: Single>(fields: &[N; 16], down: [N; 2]) -> [N; 4] {
-        let [_, m_12, m_13, _, m_22, m_23, ..] = *fields;
+    fn outline<N: Single>(fields: &[N; 16], across: [N; 2], down: [N; 2]) -> Outline<N> {
+        let [m_11, m_12, m_13, m_21, m_22, m_23, ..] = *fields;
         let (x, y) = (scaled(m_12, down), scaled(m_22, down));
-        [x[0] + m_13, x[1] + m_13, y[0] + m_23, y[1] + m_23]
+        let (x, y) = ([x[0] + m_13, x[1] + m_13], [y[0] + m_23, y[1] + m_23]);
+        let (x, y) = (
+            shifted(scaled(m_11, across), x),
+            shifted(scaled(m_21, across), y),
+        );
+        [x[0], x[1], y[0], y[1]]
     }
 
     #[inline(always)]
-    fn misses<N: Single>(fields: &[N; 16], row: &[N; 4], tile: &ViewBounds<N>) -> N::Mask {
-        let [m_11, _, _, m_21, _, _, m, x, y, z, ..] = *fields;
-        let across = shifted(scaled(m_11, tile.across), [row[0], row[1]]);
-        let down = shifted(scaled(m_21, tile.across), [row[2], row[3]]);
-        let depths = common_depths::<N, Self>(fields, tile);
-        let x = distance_at_depths(x, across, depths);
-        let y = distance_at_depths(y, down, depths);
+    fn misses<N: Single>(fields: &[N; 16], outline: &Outline<N>, depths: [N; 2]) -> N::Mask {
+        let [.., m, x, y, z, _, _, _, _, _, _] = *fields;
+        let depths = common_depths::<N, Self>(fields, depths);
+        let x = distance_at_depths(x, [outline[0], outline[1]], depths);
+        let y = distance_at_depths(y, [outline[2], outline[3]], depths);
         let z = distance(z, [m * depths[0], m * depths[1]]);
         (x * x + y * y + z * z).gt(m.splat(1.0))
     }
@@ -89,23 +77,17 @@ impl BoxTest for ProjectedEllipsoid {
 }
 
 impl BoxTest for ProjectedSphere {
-    type Row<T: Field> = [T; 0];
-
-    fn row_of<T: Field>(_: T) -> [T; 0] {
-        []
+    #[inline(always)]
+    fn outline<N: Single>(_: &[N; 10], across: [N; 2], down: [N; 2]) -> Outline<N> {
+        [across[0], across[1], down[0], down[1]]
     }
 
     #[inline(always)]
-    fn row<N: Single>(_: &[N; 10], _: [N; 2]) -> [N; 0] {
-        []
-    }
-
-    #[inline(always)]
-    fn misses<N: Single>(fields: &[N; 10], _: &[N; 0], tile: &ViewBounds<N>) -> N::Mask {
+    fn misses<N: Single>(fields: &[N; 10], outline: &Outline<N>, depths: [N; 2]) -> N::Mask {
         let [x, y, z, radius_squared, ..] = *fields;
-        let depths = common_depths::<N, Self>(fields, tile);
-        let x = distance_at_depths(x, tile.across, depths);
-        let y = distance_at_depths(y, tile.down, depths);
+        let depths = common_depths::<N, Self>(fields, depths);
+        let x = distance_at_depths(x, [outline[0], outline[1]], depths);
+        let y = distance_at_depths(y, [outline[2], outline[3]], depths);
         let z = distance(z, depths);
         (x * x + y * y + z * z).gt(radius_squared)
     }
@@ -119,9 +101,9 @@ impl BoxTest for ProjectedSphere {
 
 /// The depths that both the shape and the tile have. Reversed if there are none.
 #[inline(always)]
-fn common_depths<N: Single, P: Projected>(fields: &P::Fields<N>, tile: &ViewBounds<N>) -> [N; 2] {
+fn common_depths<N: Single, P: Projected>(fields: &P::Fields<N>, depths: [N; 2]) -> [N; 2] {
     let [near, far] = P::bounds_of(fields).depths;
-    [near.max(tile.depths[0]), far.min(tile.depths[1])]
+    [near.max(depths[0]), far.min(depths[1])]
 }
 
 /// The range of the products of `factor` and a number in `range`.

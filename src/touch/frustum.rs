@@ -28,8 +28,8 @@
 //! their half lengths. Any R is valid, so the rounding of the search does not count. The rounding of the
 //! plane, in `f64`, is 10⁻⁷ of the budget for the box test in `f32`: see `docs/rounding.md`.
 //!
-//! The first step is generic over [`Double`], so that a culler decides many lights at once. For a light that
-//! stays undecided, the search goes on in `f64`.
+//! The search is generic over [`Double`], so that a culler decides many lights at once: all by the first step,
+//! and those that stay undecided by the whole search.
 
 use crate::num::Double;
 use crate::view::ViewBounds;
@@ -166,65 +166,60 @@ struct Separation<N: Double> {
     verdict: Verdict<N>,
 }
 
-impl Frustum<f64> {
+impl<N: Double> Frustum<N> {
     /// Whether the ball touches the tile. True if a number is not finite.
     #[inline(always)]
-    pub fn meets_ball(&self) -> bool {
-        if self.is_out_of_reach() {
-            return false;
-        }
+    pub fn meets_ball(&self) -> N::Mask {
         let section = Section::new(self);
-        let mut bracket = [f64::NEG_INFINITY, f64::INFINITY];
+        let infinity = self.depth.splat(f64::INFINITY);
+        let mut bracket = [-infinity, infinity];
         let mut z = self.first_depth();
+        let mut is_undecided = !self.is_out_of_reach();
+        let mut meets = is_undecided & !is_undecided;
         for _ in 0..MAX_STEPS {
             let nearest = section.nearest(self, z);
             let Separation { slope, verdict } = self.separation(nearest.offset);
-            if !verdict.is_undecided {
-                return !verdict.is_separated;
+            meets = meets | (is_undecided & !(verdict.is_undecided | verdict.is_separated));
+            is_undecided = is_undecided & verdict.is_undecided;
+            if !N::any(is_undecided) {
+                return meets;
             }
             // The minimum is on the side to which g falls.
-            if slope > 0.0 {
-                bracket[1] = z;
-            } else {
-                bracket[0] = z;
-            }
+            let falls_to_eye = slope.is_positive();
+            bracket = N::select_all(falls_to_eye, [bracket[0], z], [z, bracket[1]]);
             let next = z - slope / self.curvature(&nearest, z);
             z = self.next_depth(bracket, next);
         }
-        true
+        meets | is_undecided
     }
 
     /// The next depth of the search: `next`, or the middle of `bracket` if `next` lies outside it.
     #[inline(always)]
-    fn next_depth(&self, bracket: [f64; 2], next: f64) -> f64 {
+    fn next_depth(&self, bracket: [N; 2], next: N) -> N {
         let next = self.depths.clamped(next);
-        if bracket[0] < next && next < bracket[1] {
-            next
-        } else {
-            self.depths.clamped(0.5 * (bracket[0] + bracket[1]))
-        }
+        let is_inside = next.gt(bracket[0]) & bracket[1].gt(next);
+        let middle = self.depths.clamped((bracket[0] + bracket[1]) * 0.5);
+        N::select(is_inside, next, middle)
     }
 
     /// Half the second derivative of g at `z`, in the piece that `nearest` belongs to.
     #[inline(always)]
-    fn curvature(&self, nearest: &Nearest<f64>, z: f64) -> f64 {
+    fn curvature(&self, nearest: &Nearest<N>, z: N) -> N {
         let [r0, r1, _] = nearest.offset;
         let w = [
             (r0 + self.light.center[0]) / z,
             (r1 + self.light.center[1]) / z,
         ];
         // The square of the part of w across a side.
-        let across = |[e0, e1]: [f64; 2]| {
+        let across = |[e0, e1]: [N; 2]| {
             let area = w[0] * e1 - w[1] * e0;
             area * area / (e0 * e0 + e1 * e1)
         };
-        let is_free = [nearest.u, nearest.v].map(|[clamped, free]| clamped == free);
-        let in_plane = match is_free {
-            [true, true] => 0.0,
-            [true, false] => across(self.light.a),
-            [false, true] => across(self.light.b),
-            [false, false] => w[0] * w[0] + w[1] * w[1],
-        };
+        let [u_is_free, v_is_free] = [nearest.u, nearest.v].map(|[clamped, free]| clamped.eq(free));
+        let of_side = N::select(u_is_free, across(self.light.a), across(self.light.b));
+        let of_side_or_corner =
+            N::select(u_is_free | v_is_free, of_side, w[0] * w[0] + w[1] * w[1]);
+        let in_plane = N::select(u_is_free & v_is_free, z.zero(), of_side_or_corner);
         in_plane + self.light.d[2] * self.light.d[2]
     }
 }

@@ -123,7 +123,8 @@ impl ProjectedHalfSpace {
 fn touches_box<P: BoxTest>(shape: &P, tile: &ViewBounds<f32>) -> bool {
     let fields = shape.to_fields();
     let bounds = P::bounds_of(&fields);
-    !bounds.are_apart(tile) && !P::misses(&fields, &P::row(&fields, tile.down), tile)
+    let outline = P::outline(&fields, tile.across, tile.down);
+    bounds.meet(tile) && !P::misses(&fields, &outline, tile.depths)
 }
 
 /// The exact test of one shape, after the box test.

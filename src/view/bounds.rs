@@ -35,17 +35,17 @@ impl<N: Single> ViewBounds<N> {
         }
     }
 
-    /// Whether the two have no slope across, no slope down, or no depth in common.
+    /// Whether the two have a slope across, a slope down and a depth in common.
     #[inline(always)]
-    pub fn are_apart(&self, other: &Self) -> N::Mask {
-        are_disjoint(self.across, other.across)
-            | are_disjoint(self.down, other.down)
-            | are_disjoint(self.depths, other.depths)
+    pub fn meet(&self, other: &Self) -> N::Mask {
+        meet(self.across, other.across)
+            & meet(self.down, other.down)
+            & meet(self.depths, other.depths)
     }
 }
 
-/// Whether two ranges have nothing in common.
+/// Whether two ranges have a number in common. False if an end is NaN.
 #[inline(always)]
-fn are_disjoint<N: Single>([a_min, a_max]: [N; 2], [b_min, b_max]: [N; 2]) -> N::Mask {
-    a_min.gt(b_max) | b_min.gt(a_max)
+pub fn meet<N: Single>([a_min, a_max]: [N; 2], [b_min, b_max]: [N; 2]) -> N::Mask {
+    a_min.le(b_max) & b_min.le(a_max)
 }

@@ -298,12 +298,6 @@ impl Camera {
         self.rounding_of_anchor
     }
 
-    /// The anchor in world space and in camera space.
-    #[cfg(feature = "cull")]
-    pub(crate) fn anchor(&self) -> [Vec3; 2] {
-        [self.anchor, self.anchor_image]
-    }
-
     /// Transforms a `point` from camera space to world space, to within rounding. The origin becomes the
     /// eye.
     #[must_use]

@@ -7,7 +7,7 @@ mod grid;
 mod interleave;
 mod rectangle;
 
-pub(crate) use bounds::ViewBounds;
+pub(crate) use bounds::{ViewBounds, meet};
 pub use camera::Camera;
 #[cfg(feature = "serde")]
 pub(crate) use camera::CameraParts;

@@ -4,10 +4,10 @@
 use std::fmt::Debug;
 
 use stochastic_light_culling::{
-    BatchBuilder, Bounded, BoxTest, Camera, Culler, DepthInterval, DepthOrder, Direction,
-    Ellipsoid, Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, Lobe, NoFresnel,
-    Project, RadianceEstimator, Roulette, Seed, ShadedPoint, ShadingBatch, Sphere, TileDepths,
-    TileGrid, TileRectangle, Vpl, Xi, glam::Mat3,
+    BatchBuilder, Bounded, BoxTest, Camera, Culler, DepthInterval, Direction, Ellipsoid, Ggx,
+    GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, Lobe, NoFresnel, Project,
+    RadianceEstimator, Roulette, Seed, ShadedPoint, ShadingBatch, Sphere, TileDepths, TileGrid,
+    TileRectangle, Vpl, Xi, glam::Mat3,
 };
 
 use crate::bits::Bits;
@@ -15,7 +15,6 @@ use crate::probe::{PLACES, SCALES};
 
 pub fn everything(bits: &mut Bits, cameras: &[Camera]) {
     let camera = &cameras[usize::from(bits.byte()) % cameras.len()];
-    order(bits, camera);
     refused_grids(bits);
     let Some(grid) = Grid::new(bits, camera) else {
         return;
@@ -47,15 +46,6 @@ pub fn everything(bits: &mut Bits, cameras: &[Camera]) {
             }
         }
     }
-}
-
-/// Any positions, no numbers among them, are all put in some order.
-fn order(bits: &mut Bits, camera: &Camera) {
-    let positions = [(); 5].map(|()| bits.vector());
-    let mut order = DepthOrder::new();
-    let mut order = order.of(positions, camera).to_vec();
-    order.sort_unstable();
-    assert_eq!(order, [0, 1, 2, 3, 4]);
 }
 
 /// More tiles than there may be, or none: refused before anything is allocated or asked for.

@@ -49,7 +49,8 @@ pub fn grid() -> impl Strategy<Value = Grid> {
     let interval = prop_oneof![
         1 => Just(None),
         1 => Just(DepthInterval::new(0.0, f32::MAX).ok()),
-        6 => (0.01..60.0_f32, 1.0..4.0_f32)
+        // Of proptest, a lower end that is no multiple of the steps of `f32` below 60 fails one sample in 1e7.
+        6 => (0.015_625..60.0_f32, 1.0..4.0_f32)
             .prop_map(|(near, ratio)| DepthInterval::new(near, near * ratio).ok()),
     ];
     ([1..60_u32, 1..30_u32], 1..4_usize).prop_flat_map(move |(size, intervals)| {

@@ -3,7 +3,8 @@
 use proptest::prelude::*;
 use stochastic_light_culling::{
     BoxTest, CullCounters, Culler, DepthInterval, Ellipsoid, LightBatch, LightLists,
-    PixelRectangle, ProjectedEllipsoid, TileDepths, TileRectangle,
+    PixelRectangle, ProjectedEllipsoid, ProjectedSphere, Sphere, TileDepths, TileGrid,
+    TileRectangle,
     glam::{Mat3, Vec2, Vec3},
 };
 use support::generators::cases;
@@ -115,7 +116,9 @@ fn lists_of_extreme_tiles_are_those_of_the_scalar_test() {
     let slopes = slopes.iter().flat_map(|slope| [-slope, *slope]);
     let slopes: Vec<f32> = slopes.collect();
     let depths = [0.0, 1e-45, 1e-20, 1.0, 2.0, 1e20, f32::MAX];
-    for _ in 0..100 {
+    for round in 0..100 {
+        // One block, or many, whose columns and rows are in no order.
+        let count = if round % 5 == 0 { 43 } else { 12 };
         let side = |rng: &mut fastrand::Rng| {
             let [a, b] = [(); 2].map(|()| slopes[rng.usize(0..slopes.len())]);
             TileRectangle::new(Vec2::splat(a.min(b)), Vec2::splat(a.max(b))).ok()
@@ -123,14 +126,20 @@ fn lists_of_extreme_tiles_are_those_of_the_scalar_test() {
         let [across, down] = [(); 2].map(|()| -> Vec<TileRectangle> {
             std::iter::repeat_with(|| side(&mut rng))
                 .flatten()
-                .take(12)
+                .take(count as usize)
                 .collect()
         });
         let of_pixels = rng.bool();
         let rectangle = |[x, y]: [u32; 2]| {
             if of_pixels {
-                let min = [x, y].map(|n| if n == 0 { 0 } else { u32::MAX >> (2 * n) });
-                let max = [x, y].map(|n| u32::MAX >> n);
+                let min = [x, y].map(|n| {
+                    if n % 12 == 0 {
+                        0
+                    } else {
+                        u32::MAX >> (2 * (n % 12))
+                    }
+                });
+                let max = [x, y].map(|n| u32::MAX >> (n % 12));
                 return camera().tile_rectangle([1, 1], PixelRectangle { min, max });
             }
             let [across, down] = [across[x as usize], down[y as usize]];
@@ -140,9 +149,9 @@ fn lists_of_extreme_tiles_are_those_of_the_scalar_test() {
             );
             TileRectangle::new(Vec2::new(x[0], y[0]), Vec2::new(x[1], y[1])).unwrap()
         };
-        let mut tiles = TileDepths::from_rectangles([12, 12], 1, rectangle).unwrap();
+        let mut tiles = TileDepths::from_rectangles([count; 2], 1, rectangle).unwrap();
         let mut seen = Vec::new();
-        for tile in (0..144).map(|i| [i % 12, i / 12]) {
+        for tile in (0..count * count).map(|i| [i % count, i / count]) {
             let [a, b] = [(); 2].map(|()| depths[rng.usize(0..depths.len())]);
             let interval = DepthInterval::new(a.min(b), a.max(b)).unwrap();
             tiles.set(tile, [interval]);
@@ -192,6 +201,56 @@ fn lists_of_extreme_tiles_are_those_of_the_scalar_test() {
                     let expected: Vec<u32> = touching.map(|(number, _)| number).collect();
                     assert_eq!(lists.of(*tile, 0), expected, "{rectangle:?} {depths:?}");
                 }
+            }
+        }
+    }
+}
+
+/// Lights as small as tiles, in scenes whose depths differ from block to block: each light reaches the depths of a
+/// few tiles, and of none beside these.
+#[test]
+fn lists_of_small_lights_are_those_of_the_scalar_test() {
+    let mut rng = fastrand::Rng::with_seed(5);
+    let camera = camera();
+    let grid = TileGrid::new([1040, 720], 16).unwrap();
+    // With the second, each block of the culler has depths of its own.
+    for steps in [[5, 4], [17, 15], [23, 9]] {
+        let mut tiles = TileDepths::new(&grid, &camera, 1).unwrap();
+        let near = |[x, y]: [u32; 2]| 5.0 + (9 * (x / steps[0]) + 2 * (y / steps[1])) as f32 % 40.0;
+        let depths = |tile| DepthInterval::new(near(tile), near(tile) + 0.5).unwrap();
+        for tile in grid.tiles() {
+            tiles.set(tile, [depths(tile)]);
+        }
+        let shapes: Vec<_> = std::iter::repeat_with(|| {
+            // At the depth of one tile, and at slopes up to a few tiles beside it.
+            let tile = [rng.u32(0..65), rng.u32(0..45)];
+            let [x, y] = tile.map(|n| 16.0 * (n as f32 + 8.0 * rng.f32() - 4.0));
+            let depth = near(tile) + 0.25;
+            let place = [x.clamp(0.0, 1039.0) as u32, y.clamp(0.0, 719.0) as u32];
+            let center = camera.point_in_pixel([1040, 720], place, depth);
+            let radius = depth * 10_f32.powf(rng.f32() - 2.2);
+            let center = camera.to_world_space(center);
+            Sphere::new(center, radius)
+                .unwrap()
+                .project(&camera)
+                .unwrap()
+        })
+        .take(600)
+        .collect();
+        let mut batch = LightBatch::new();
+        batch.extend((0..).zip(shapes.iter().copied()));
+        let mut lists = LightLists::new();
+        for lanes in [16, 8, 4] {
+            Culler::with_lanes(lanes)
+                .cull(&batch, &tiles, &mut lists)
+                .unwrap();
+            assert!(lists.len() > 500);
+            for tile in grid.tiles() {
+                let rectangle = camera.tile(&grid, tile);
+                let touches = |shape: &ProjectedSphere| shape.touches(&rectangle, &depths(tile));
+                let touching = (0..).zip(&shapes).filter(|(_, shape)| touches(shape));
+                let expected: Vec<u32> = touching.map(|(number, _)| number).collect();
+                assert_eq!(lists.of(tile, 0), expected, "{tile:?}");
             }
         }
     }

@@ -1,0 +1,239 @@
+//! The lists of the depth intervals of the tiles of an area.
+
+use alloc::vec::Vec;
+
+use fearless_simd::{Simd, SimdBase, SimdMask};
+
+use super::batch::grow;
+use super::block::{Output, Scene};
+use super::lanes::{
+    LANES, Lanes, Record, load, load_indices, parts, splat, splat_bounds, store, write_chosen,
+};
+use super::select::Places;
+use super::tile_depths::{Area, is_none};
+use super::{CullCounters, TileDepths};
+use crate::num::F32Lanes;
+use crate::project::Projected;
+use crate::touch::BoxTest;
+use crate::view::ViewBounds;
+
+/// Sixteen lights: the fields of their shapes, and a number for each, which lists hold.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Chunk<P: Projected> {
+    fields: P::Fields<Lanes>,
+    numbers: Lanes<u32>,
+}
+
+impl<P: Projected> Chunk<P> {
+    fn zero() -> Self {
+        Self {
+            fields: P::fields_of([0.0; LANES]),
+            numbers: [0; LANES],
+        }
+    }
+
+    /// The `part`-th vector of each field.
+    #[inline(always)]
+    fn load<S: Simd>(&self, simd: S, part: usize) -> P::Fields<F32Lanes<S>> {
+        let mut fields = P::fields_of(F32Lanes::new(simd, 0.0));
+        for (vector, lanes) in fields.as_mut().iter_mut().zip(self.fields.as_ref()) {
+            *vector = load(simd, lanes, part);
+        }
+        fields
+    }
+}
+
+/// The memory in which the lists of an area are made.
+#[derive(Clone, Debug)]
+pub(super) struct TileLists<P: BoxTest> {
+    chunks: Vec<Chunk<P>>,
+    writer: ListWriter,
+    /// Whether lists hold the places of lights, for the exact test, in place of their indices.
+    pub lists_places: bool,
+}
+
+impl<P: BoxTest> TileLists<P> {
+    pub const fn new() -> Self {
+        Self {
+            chunks: Vec::new(),
+            writer: ListWriter {
+                candidates: Vec::new(),
+                lists: Vec::new(),
+                lens: Vec::new(),
+            },
+            lists_places: false,
+        }
+    }
+
+    /// The memory in use, with what is to spare.
+    #[cfg(all(test, feature = "rayon"))]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.chunks[..]) + size_of_val(&self.writer.lists[..])
+    }
+
+    /// Writes the lists of the tiles of `area`: those of the lights at `places` that touch each.
+    #[inline(always)]
+    pub fn write<S: Simd>(
+        &mut self,
+        simd: S,
+        scene: &Scene<P>,
+        places: &[u32],
+        area: Area,
+        output: &mut Output,
+        counters: &mut CullCounters,
+    ) {
+        if places.is_empty() {
+            return;
+        }
+        simd.vectorize(
+            #[inline(always)]
+            || self.gather(simd, scene, places),
+        );
+        let chunks = &self.chunks[..places.len().div_ceil(LANES)];
+        let writer = &mut self.writer;
+        simd.vectorize(
+            #[inline(always)]
+            || writer.write(simd, chunks, scene.tiles, area, output, counters),
+        );
+    }
+
+    /// Lays the lights at `places` side by side in chunks.
+    #[inline(always)]
+    fn gather<S: Simd>(&mut self, simd: S, scene: &Scene<P>, places: &[u32]) {
+        grow(
+            &mut self.chunks,
+            places.len().div_ceil(LANES),
+            Chunk::zero(),
+        );
+        let nowhere = Record::new::<P>(&P::NOWHERE);
+        for (chunk, places) in self.chunks.iter_mut().zip(Places::chunks(places)) {
+            for part in 0..parts::<S>() {
+                let fields = places.load_fields(simd, scene.batch, &nowhere, part);
+                for (lanes, vector) in chunk.fields.as_mut().iter_mut().zip(fields.as_ref()) {
+                    store(lanes, part, *vector);
+                }
+            }
+            chunk.numbers = if self.lists_places {
+                places.0
+            } else {
+                places.lights(scene.batch)
+            };
+        }
+    }
+}
+
+/// Makes the lists of one tile at a time.
+#[derive(Clone, Debug)]
+struct ListWriter {
+    /// The vectors that have a light whose bounds touch the tile.
+    candidates: Vec<u32>,
+    /// The list of each depth interval, all with the same room.
+    lists: Vec<u32>,
+    /// The length of each list. Zero between tiles.
+    lens: Vec<usize>,
+}
+
+impl ListWriter {
+    /// Writes the lists of the tiles of `area` for the lights of `chunks`.
+    #[inline(always)]
+    fn write<S: Simd, P: BoxTest>(
+        &mut self,
+        simd: S,
+        chunks: &[Chunk<P>],
+        tiles: &TileDepths,
+        area: Area,
+        output: &mut Output,
+        counters: &mut CullCounters,
+    ) {
+        let intervals = tiles.intervals() as usize;
+        let vectors = chunks.len() * parts::<S>();
+        // Whole vectors are written.
+        let room = (vectors + 1) * S::u32s::LEN;
+        grow(&mut self.candidates, vectors, 0);
+        grow(&mut self.lists, intervals * room, 0);
+        grow(&mut self.lens, intervals, 0);
+        for y in area.min[1]..area.max[1] {
+            for x in area.min[0]..area.max[0] {
+                let tile = ViewBounds {
+                    across: tiles.across(x),
+                    down: tiles.down(y),
+                    depths: tiles.hull(x, y),
+                };
+                if is_none(tile.depths) {
+                    counters.empty += intervals as u64;
+                    continue;
+                }
+                counters.tile_tests += (vectors * S::u32s::LEN) as u64;
+                let tile = splat_bounds(simd, &tile);
+                let count = self.find_candidates(simd, chunks, &tile);
+                if count == 0 {
+                    continue;
+                }
+                counters.box_tests += (count * intervals * S::u32s::LEN) as u64;
+                self.test_candidates(simd, chunks, &tile, count, tiles.depths_of(x, y), room);
+                let slot = output.window.slot([x, y], intervals);
+                for interval in 0..intervals {
+                    let len = core::mem::take(&mut self.lens[interval]);
+                    let list = &self.lists[interval * room..][..room];
+                    output.lists.append_list(simd, slot + interval, list, len);
+                }
+            }
+        }
+    }
+
+    /// Finds the vectors with a light whose bounds touch `tile`. Returns their number.
+    ///
+    /// Does not branch on the result, since it would often be mispredicted.
+    #[inline(always)]
+    fn find_candidates<S: Simd, P: BoxTest>(
+        &mut self,
+        simd: S,
+        chunks: &[Chunk<P>],
+        tile: &ViewBounds<F32Lanes<S>>,
+    ) -> usize {
+        let mut count = 0;
+        for (index, chunk) in chunks.iter().enumerate() {
+            for part in 0..parts::<S>() {
+                let fields = chunk.load(simd, part);
+                let meet = P::bounds_of(&fields).meet(tile).any_true();
+                self.candidates[count] = (index * parts::<S>() + part) as u32;
+                count += usize::from(meet);
+            }
+        }
+        count
+    }
+
+    /// Writes the numbers of those of the first `count` candidates that may touch each depth interval of `tile`
+    /// to the list of the interval.
+    #[inline(always)]
+    fn test_candidates<S: Simd, P: BoxTest>(
+        &mut self,
+        simd: S,
+        chunks: &[Chunk<P>],
+        tile: &ViewBounds<F32Lanes<S>>,
+        count: usize,
+        intervals: &[[f32; 2]],
+        room: usize,
+    ) {
+        for candidate in &self.candidates[..count] {
+            let vector = *candidate as usize;
+            let (chunk, part) = (&chunks[vector / parts::<S>()], vector % parts::<S>());
+            let fields = chunk.load(simd, part);
+            let numbers = load_indices(simd, &chunk.numbers, part);
+            let bounds = P::bounds_of(&fields);
+            let outline = P::outline(&fields, tile.across, tile.down);
+            for (interval, depths) in intervals.iter().enumerate() {
+                if is_none(*depths) {
+                    continue;
+                }
+                let depths = splat(simd, *depths);
+                let meet = bounds.meet(&ViewBounds { depths, ..*tile });
+                let touching = meet & !P::misses(&fields, &outline, depths);
+                let len = &mut self.lens[interval];
+                let list = &mut self.lists[interval * room + *len..];
+                *len += write_chosen::<S>(numbers, touching, list);
+            }
+        }
+    }
+}
