@@ -1,6 +1,7 @@
-//! The paper's loop as one would write it without any of this crate: scalar, an array of structures,
-//! each light against each tile, a list for each depth interval.
+//! The paper's loop as one would write it without any of this crate: scalar, an array of structures, each light
+//! against each tile, a list for each depth interval. Compiled for this processor, with its fused multiply-add.
 
+use fearless_simd::{Level, dispatch};
 use stochastic_light_culling::glam::{Mat3, Vec2, Vec3};
 use support::workload::{self, Depths, halves};
 
@@ -45,13 +46,19 @@ pub fn frame(frame: &[workload::Subregion], depths: Depths) -> Vec<Subregion> {
 }
 
 impl Subregion {
-    pub fn cull(&mut self) {
+    pub fn cull(&mut self, level: Level) {
+        // What is inlined here may take all instructions of the processor.
+        dispatch!(level, _simd => self.cull_here());
+    }
+
+    #[inline(always)]
+    fn cull_here(&mut self) {
         for (tile, lists) in self.tiles.iter().zip(&mut self.lists) {
             lists.iter_mut().for_each(Vec::clear);
             for (i, light) in (0..).zip(&self.lights) {
-                let [low, high] = light.bounds(tile);
+                let rectangle = light.rectangle(tile);
                 for (list, depths) in lists.iter_mut().zip(tile.depths) {
-                    if light.touches(low, high, depths) {
+                    if light.touches(rectangle, depths) {
                         list.push(i);
                     }
                 }
@@ -61,40 +68,43 @@ impl Subregion {
 }
 
 impl Light {
-    /// The box of the tile at depth 1 after stretching.
-    fn bounds(&self, tile: &Tile) -> [Vec2; 2] {
+    /// The bounding rectangle of the tile at depth 1 after stretching.
+    #[inline(always)]
+    fn rectangle(&self, tile: &Tile) -> [[f32; 2]; 2] {
         let m = &self.matrix;
-        let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(Vec3::truncate);
-        let (left, right) = (x * tile.min.x, x * tile.max.x);
-        let (top, bottom) = (y * tile.min.y, y * tile.max.y);
-        let ends = |[a, b]: [f32; 2], [c, d]: [f32; 2], z| {
-            let low = lesser(a, b) + lesser(c, d) + z;
-            [low, greater(a, b) + greater(c, d) + z]
+        let range = |[a, b, c]: [f32; 3]| {
+            let (left, right) = (a * tile.min.x, a * tile.max.x);
+            let (top, bottom) = (b.mul_add(tile.min.y, c), b.mul_add(tile.max.y, c));
+            let low = lesser(left, right) + lesser(top, bottom);
+            [low, greater(left, right) + greater(top, bottom)]
         };
-        let [low_x, high_x] = ends([left.x, right.x], [top.x, bottom.x], z.x);
-        let [low_y, high_y] = ends([left.y, right.y], [top.y, bottom.y], z.y);
-        [Vec2::new(low_x, low_y), Vec2::new(high_x, high_y)]
+        [
+            range([m.x_axis.x, m.y_axis.x, m.z_axis.x]),
+            range([m.x_axis.y, m.y_axis.y, m.z_axis.y]),
+        ]
     }
 
-    fn touches(&self, low: Vec2, high: Vec2, [near, far]: [f32; 2]) -> bool {
+    #[inline(always)]
+    fn touches(&self, [across, down]: [[f32; 2]; 2], [near, far]: [f32; 2]) -> bool {
         let (m, center) = (self.matrix.z_axis.z, self.center);
         let apart = |center: f32, low: f32, high: f32| center - lesser(greater(center, low), high);
-        let at_depths = |center, low: f32, high: f32| {
+        let at_depths = |center, [low, high]: [f32; 2]| {
             let low = lesser(low * near, low * far);
             apart(center, low, greater(high * near, high * far))
         };
-        let x = at_depths(center.x, low.x, high.x);
-        let y = at_depths(center.y, low.y, high.y);
+        let (x, y) = (at_depths(center.x, across), at_depths(center.y, down));
         let z = apart(center.z, m * near, m * far);
-        x * x + y * y + z * z <= 1.0
+        x.mul_add(x, y.mul_add(y, z * z)) <= 1.0
     }
 }
 
 /// One instruction, which `f32::min` is not, since it takes care of NaN.
+#[inline(always)]
 fn lesser(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
+#[inline(always)]
 fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }

@@ -4,9 +4,9 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, measurement::WallTime};
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, Camera, DepthOrder, Direction, Fresnel, Ggx,
-    GgxLobe, Incidence, LambertLobe, LightBatch, Lobe, NoFresnel, Paper, Projected, Roulette,
-    Schlick, Seed, Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, Camera, Direction, Fresnel, Ggx, GgxLobe,
+    Incidence, LambertLobe, LightBatch, Lobe, NoFresnel, Paper, Projected, Roulette, Schlick, Seed,
+    Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 use support::workload;
 
@@ -131,12 +131,4 @@ pub fn building(criterion: &mut Criterion) {
         |light, xi| light.bound(&roulette, xi).project(&camera),
         |lights, batch| builder.add(indexed(lights), batch),
     );
-
-    let mut order = DepthOrder::new();
-    group.bench_function("depth order", |bencher| {
-        bencher.iter(|| {
-            let positions = diffuse.iter().map(|(light, _)| light.position());
-            black_box(order.of(positions, &camera));
-        });
-    });
 }

@@ -4,13 +4,13 @@
 use std::f32::consts::{PI, TAU};
 
 use stochastic_light_culling::{
-    Camera, DepthInterval, Ellipsoid, LightBatch, ProjectedEllipsoid, TileDepths, TileRectangle,
+    Camera, DepthInterval, Ellipsoid, ProjectedEllipsoid, TileDepths, TileRectangle,
     glam::{Mat3, Vec2, Vec3},
 };
 use support::workload::SplitMix64;
 
-/// A frame of (15·`scale`)×(9·`scale`) tiles and 1024·`scale`² lights, from near to far.
-pub fn frame(scale: u32) -> (LightBatch<ProjectedEllipsoid>, TileDepths) {
+/// A frame of (15·`scale`)×(9·`scale`) tiles and 1024·`scale`² lights in no order.
+pub fn frame(scale: u32) -> (Vec<ProjectedEllipsoid>, TileDepths) {
     let fov = PI / 3.0;
     let camera = Camera::look_at(
         Vec3::ZERO,
@@ -25,19 +25,11 @@ pub fn frame(scale: u32) -> (LightBatch<ProjectedEllipsoid>, TileDepths) {
     (lights(scale, slopes, &camera), tiles(scale, slopes))
 }
 
-fn lights(scale: u32, slopes: Vec2, camera: &Camera) -> LightBatch<ProjectedEllipsoid> {
+fn lights(scale: u32, slopes: Vec2, camera: &Camera) -> Vec<ProjectedEllipsoid> {
     let mut random = SplitMix64(3);
-    let mut lights: Vec<_> = (0..1024 * scale * scale)
-        .map(|light| (light, ellipsoid(&mut random, light, scale, slopes)))
-        .collect();
-    lights.sort_by(|(_, a), (_, b)| b.center().z.total_cmp(&a.center().z));
-    let mut batch = LightBatch::new();
-    batch.extend(
-        lights
-            .iter()
-            .filter_map(|(light, ellipsoid)| Some((*light, ellipsoid.project(camera)?))),
-    );
-    batch
+    (0..1024 * scale * scale)
+        .filter_map(|light| ellipsoid(&mut random, light, scale, slopes).project(camera))
+        .collect()
 }
 
 fn ellipsoid(random: &mut SplitMix64, light: u32, scale: u32, slopes: Vec2) -> Ellipsoid {

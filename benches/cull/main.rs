@@ -12,6 +12,7 @@ mod polyhedron;
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use fearless_simd::Level;
 use stochastic_light_culling::{
     Culler, DepthInterval, LightBatch, LightLists, ProjectedEllipsoid, TileDepths, TileRectangle,
 };
@@ -19,38 +20,58 @@ use support::workload::{self, Depths, Subregion};
 
 const KINDS: [(&str, Depths); 2] = [("W1", |tile| tile.scattered), ("W1c", |tile| tile.coherent)];
 
-/// A subregion, made ready.
+/// A subregion: its projected lights in no order, and its lists.
 struct Ready {
-    batch: LightBatch<ProjectedEllipsoid>,
+    shapes: Vec<ProjectedEllipsoid>,
     tiles: TileDepths,
     lists: LightLists,
 }
 
 fn ready(frame: &[Subregion], depths: Depths) -> Vec<Ready> {
     let camera = workload::camera();
-    let ready = |subregion: &Subregion| {
-        let mut lights: Vec<_> = (0..).zip(&subregion.lights).collect();
-        lights.sort_by(|(_, a), (_, b)| a.center[2].total_cmp(&b.center[2]));
-        let mut batch = LightBatch::new();
-        batch.extend(lights.iter().map(|(i, light)| (*i, light.stretch(&camera))));
-        Ready {
-            batch,
-            tiles: subregion.tile_depths(depths),
-            lists: LightLists::new(),
-        }
+    let ready = |subregion: &Subregion| Ready {
+        shapes: (subregion.lights.iter())
+            .map(|light| light.stretch(&camera))
+            .collect(),
+        tiles: subregion.tile_depths(depths),
+        lists: LightLists::new(),
     };
     frame.iter().map(ready).collect()
 }
 
-fn cull_all(culler: &mut Culler<ProjectedEllipsoid>, frame: &mut [Ready]) {
-    for Ready {
-        batch,
-        tiles,
-        lists,
-    } in frame
-    {
-        culler.cull(batch, tiles, lists).expect("few enough");
+/// The batch that all subregions share, one after the other, and the culler.
+struct Memory {
+    batch: LightBatch<ProjectedEllipsoid>,
+    culler: Culler<ProjectedEllipsoid>,
+}
+
+impl Memory {
+    fn new(culler: Culler<ProjectedEllipsoid>) -> Self {
+        let batch = LightBatch::new();
+        Self { batch, culler }
     }
+
+    /// From projected lights to lists, packing included.
+    fn pack_and_cull(&mut self, frame: &mut [Ready]) {
+        for ready in frame {
+            self.batch.clear();
+            self.batch.extend((0..).zip(ready.shapes.iter().copied()));
+            let lists = self
+                .culler
+                .cull(&self.batch, &ready.tiles, &mut ready.lists);
+            lists.expect("few enough");
+        }
+    }
+}
+
+/// Batches that are packed already, as a `BatchBuilder` packs them.
+fn pack(frame: &[Ready]) -> Vec<LightBatch<ProjectedEllipsoid>> {
+    let pack = |ready: &Ready| {
+        let mut batch = LightBatch::new();
+        batch.extend((0..).zip(ready.shapes.iter().copied()));
+        batch
+    };
+    frame.iter().map(pack).collect()
 }
 
 fn workloads(criterion: &mut Criterion) {
@@ -64,38 +85,67 @@ fn workloads(criterion: &mut Criterion) {
         group.sample_size(20);
         let mut baseline = baseline::frame(&frame, depths);
         group.bench_function("scalar baseline", |bencher| {
-            bencher.iter(|| baseline.iter_mut().for_each(baseline::Subregion::cull));
+            let level = Level::new();
+            bencher.iter(|| {
+                for subregion in &mut baseline {
+                    subregion.cull(level);
+                }
+            });
         });
         let mut ready = ready(&frame, depths);
+        let batches = pack(&ready);
         for lanes in [16, 8, 4] {
-            let mut flat = Culler::with_lanes(lanes).without_blocks();
+            let mut flat = Memory::new(Culler::with_lanes(lanes).without_blocks());
             group.bench_function(format!("one level, {lanes} lanes"), |bencher| {
-                bencher.iter(|| cull_all(&mut flat, &mut ready));
+                bencher.iter(|| flat.pack_and_cull(&mut ready));
+            });
+            let mut memory = Memory::new(Culler::with_lanes(lanes));
+            group.bench_function(format!("packed and culled, {lanes} lanes"), |bencher| {
+                bencher.iter(|| memory.pack_and_cull(&mut ready));
             });
             let mut culler = Culler::with_lanes(lanes);
-            group.bench_function(format!("blocks, {lanes} lanes"), |bencher| {
-                bencher.iter(|| cull_all(&mut culler, &mut ready));
+            group.bench_function(format!("culled, {lanes} lanes"), |bencher| {
+                bencher.iter(|| {
+                    for (ready, batch) in ready.iter_mut().zip(&batches) {
+                        let counters = culler.cull(batch, &ready.tiles, &mut ready.lists);
+                        counters.expect("few enough");
+                    }
+                });
             });
         }
-        let mut exact = Culler::new().with_exact_test();
-        group.bench_function("blocks, exact", |bencher| {
-            bencher.iter(|| cull_all(&mut exact, &mut ready));
+        let mut exact = Memory::new(Culler::new().with_exact_test());
+        group.bench_function("packed and culled, exact", |bencher| {
+            bencher.iter(|| exact.pack_and_cull(&mut ready));
         });
     }
 }
 
-/// Times are per light of all lists.
+/// From projected lights in no order to lists. Times are per light.
 fn growth(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("growth");
     group.sample_size(10);
     for scale in [1, 3, 10, 31] {
-        let (batch, tiles) = growth::frame(scale);
-        let (mut culler, mut lists) = (Culler::new(), LightLists::new());
-        let mut cull = || culler.cull(&batch, &tiles, &mut lists).expect("few enough");
-        group.throughput(Throughput::Elements(cull().pairs));
+        let (shapes, tiles) = growth::frame(scale);
         let [width, height] = tiles.size();
-        let name = format!("{} lights, {} tiles", batch.len(), width * height);
-        group.bench_function(name, |bencher| bencher.iter(&mut cull));
+        let name = format!("{} lights, {} tiles", shapes.len(), width * height);
+        group.throughput(Throughput::Elements(shapes.len() as u64));
+        let mut frame = [Ready {
+            shapes,
+            tiles,
+            lists: LightLists::new(),
+        }];
+        let batches = pack(&frame);
+        let mut culler = Culler::new();
+        group.bench_function(format!("culled, {name}"), |bencher| {
+            bencher.iter(|| {
+                let [Ready { tiles, lists, .. }] = &mut frame;
+                culler.cull(&batches[0], tiles, lists).expect("few enough");
+            });
+        });
+        let mut memory = Memory::new(culler);
+        group.bench_function(format!("packed and culled, {name}"), |bencher| {
+            bencher.iter(|| memory.pack_and_cull(&mut frame));
+        });
     }
 }
 
