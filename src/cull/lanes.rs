@@ -68,7 +68,7 @@ pub(super) fn splat_bounds<S: Simd>(simd: S, bounds: &ViewBounds<f32>) -> ViewBo
     }
 }
 
-/// The fields of one shape, padded with zeros to one cache line.
+/// One cache line of numbers, such as the fields of a shape, padded with zeros.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Record(pub Lanes);
@@ -104,7 +104,8 @@ pub(super) fn load_records<'a, S: Simd, P: Projected>(
     fields
 }
 
-/// [`load_records`], whatever the records hold.
+/// Transposes as many records as a vector has lanes, whatever they hold: the numbers of those that `record` gives
+/// for each lane.
 #[inline(always)]
 pub(super) fn load_lines<'a, S: Simd>(
     simd: S,

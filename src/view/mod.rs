@@ -7,7 +7,9 @@ mod grid;
 mod interleave;
 mod rectangle;
 
-pub(crate) use bounds::{ViewBounds, meet};
+pub(crate) use bounds::ViewBounds;
+#[cfg(feature = "cull")]
+pub(crate) use bounds::meet;
 pub use camera::Camera;
 #[cfg(feature = "serde")]
 pub(crate) use camera::CameraParts;

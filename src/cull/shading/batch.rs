@@ -1,19 +1,15 @@
 use alloc::vec::Vec;
 
+use crate::cull::lanes::{LANES, Record};
 use crate::light::{Vpl, Xi};
 use crate::lobe::{FIRST_NUMBERS, Lobe};
 
-/// The numbers in a line.
-pub(super) const LINE: usize = 16;
+/// The numbers in a line of a light.
+pub(super) const LINE: usize = LANES;
 /// Where in the first line of a light its lobe's numbers begin. Before them are position and Φ.
 pub(super) const LOBE: usize = 4;
 /// Where in the first line ξ is.
 pub(super) const XI: usize = LOBE + FIRST_NUMBERS;
-
-/// A cache line of a light.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(super) struct Line(pub [f32; LINE]);
 
 /// The lights of a frame with their ξ, ready for a [`RadianceEstimator`](crate::RadianceEstimator).
 ///
@@ -35,7 +31,7 @@ pub(super) struct Line(pub [f32; LINE]);
 #[derive(Clone, Debug)]
 pub struct ShadingBatch<L> {
     /// [`lines_per_light`](Self::lines_per_light) of each light.
-    pub(super) lines: Vec<Line>,
+    pub(super) lines: Vec<Record>,
     /// The lobes, if they are more than their numbers.
     pub(super) lobes: Vec<L>,
 }
@@ -105,11 +101,11 @@ impl<L: Lobe + Clone> ShadingBatch<L> {
         line[..LOBE].copy_from_slice(&[p.x, p.y, p.z, light.flux()]);
         line[LOBE..XI].copy_from_slice(first);
         line[XI] = xi.get();
-        self.lines.push(Line(line));
+        self.lines.push(Record(line));
         if Self::lines_per_light() > 1 {
             let mut line = [0.0; LINE];
             line.copy_from_slice(rest);
-            self.lines.push(Line(line));
+            self.lines.push(Record(line));
         }
         if L::has_more_than_numbers() {
             self.lobes.push(lobe.clone());

@@ -1,11 +1,12 @@
 //! The evaluation of one light at one point, in each lane.
 
-use fearless_simd::{Simd, SimdBase, SimdMask};
+use fearless_simd::{Simd, SimdMask};
 
-use super::batch::{LINE, LOBE, Line, ShadingBatch, XI};
+use super::batch::{LINE, LOBE, ShadingBatch, XI};
+use crate::cull::lanes::load_lines;
 use crate::light::{Roulette, unit};
 use crate::lobe::{FIRST_NUMBERS, Lobe, LobeNumbers};
-use crate::num::{F32Lanes, MAX_LANES, Real, Single, Vector3};
+use crate::num::{F32Lanes, Real, Vector3};
 
 /// What all evaluations of a frame share.
 #[derive(Clone, Copy, Debug)]
@@ -57,43 +58,14 @@ impl<S: Simd> Lights<F32Lanes<S>> {
         let mut vectors = [[F32Lanes::new(simd, 0.0); LINE]; 2];
         let lines = ShadingBatch::<L>::lines_per_light();
         for (line, vectors) in vectors[..lines].iter_mut().enumerate() {
-            let line_of = |lane: usize| {
-                let first = ShadingBatch::<L>::first_line(indices[lane]);
-                &batch.lines[first + line]
-            };
-            for part in 0..LINE / S::f32s::LEN {
-                transpose(simd, line_of, part, vectors);
-            }
+            *vectors = load_lines(
+                simd,
+                #[inline(always)]
+                |lane| &batch.lines[ShadingBatch::<L>::first_line(indices[lane]) + line],
+            );
         }
         Self::from_lines(simd, vectors)
     }
-}
-
-/// Transposes the numbers of one vector's width of each lane's line, those of `part`.
-#[inline(always)]
-fn transpose<'a, S: Simd>(
-    simd: S,
-    line_of: impl Fn(usize) -> &'a Line,
-    part: usize,
-    numbers: &mut [F32Lanes<S>; LINE],
-) {
-    let lanes = S::f32s::LEN;
-    let mut rows = [F32Lanes::new(simd, 0.0); MAX_LANES];
-    for (lane, row) in rows[..lanes].iter_mut().enumerate() {
-        *row = row.load(&line_of(lane).0[part * lanes..]);
-    }
-    // Interleaving the upper half of the rows with the lower moves each bit of an element's place, (row,
-    // column), to the next higher. Rows and columns have swapped after half of the bits.
-    for _ in 0..lanes.ilog2() {
-        let mut interleaved = rows;
-        for i in 0..lanes / 2 {
-            let (low, high) = rows[i].0.interleave(rows[i + lanes / 2].0);
-            interleaved[2 * i] = F32Lanes(low);
-            interleaved[2 * i + 1] = F32Lanes(high);
-        }
-        rows = interleaved;
-    }
-    numbers[part * lanes..][..lanes].copy_from_slice(&rows[..lanes]);
 }
 
 /// A point in each lane.
