@@ -55,7 +55,7 @@ impl Memory {
     fn pack_and_cull(&mut self, frame: &mut [Ready]) {
         for ready in frame {
             self.batch.clear();
-            self.batch.extend((0..).zip(ready.shapes.iter().copied()));
+            self.batch.extend((0..).zip(&ready.shapes));
             let lists = self
                 .culler
                 .cull(&self.batch, &ready.tiles, &mut ready.lists);
@@ -68,7 +68,7 @@ impl Memory {
 fn pack(frame: &[Ready]) -> Vec<LightBatch<ProjectedEllipsoid>> {
     let pack = |ready: &Ready| {
         let mut batch = LightBatch::new();
-        batch.extend((0..).zip(ready.shapes.iter().copied()));
+        batch.extend((0..).zip(&ready.shapes));
         batch
     };
     frame.iter().map(pack).collect()

@@ -1,4 +1,5 @@
 use alloc::vec::Vec;
+use core::borrow::Borrow;
 use core::marker::PhantomData;
 
 use fearless_simd::{Simd, SimdBase, SimdMask, dispatch};
@@ -112,7 +113,7 @@ impl<P: Projected> LightBatch<P> {
     /// All shapes must be projected with the camera whose tiles are culled.
     #[inline]
     pub fn push(&mut self, light: u32, shape: &P) {
-        self.extend([(light, *shape)]);
+        self.extend([(light, shape)]);
     }
 
     /// Iterates over the indices and shapes of the lights, in the order in which they were added.
@@ -147,6 +148,22 @@ impl<P: Projected> LightBatch<P> {
             self.records[end] = *record;
             end += (bits >> lane & 1) as usize;
         }
+    }
+
+    #[inline(always)]
+    fn add<Q: Borrow<P>>(&mut self, lights: impl Iterator<Item = (u32, Q)>) {
+        let mut end = self.len;
+        for (light, shape) in lights {
+            self.make_room(end + 1);
+            self.records[end] = Record::new::<P>(&shape.borrow().to_fields());
+            self.lights[end] = light;
+            end += 1;
+            // While the records are in the cache.
+            if end == self.len + GROUP {
+                self.count(end);
+            }
+        }
+        self.count(end);
     }
 
     /// Counts the lights up to `end`, whose records are written.
@@ -230,18 +247,14 @@ impl<P: Projected> Default for LightBatch<P> {
 
 impl<P: Projected> Extend<(u32, P)> for LightBatch<P> {
     fn extend<I: IntoIterator<Item = (u32, P)>>(&mut self, lights: I) {
-        let mut end = self.len;
-        for (light, shape) in lights {
-            self.make_room(end + 1);
-            self.records[end] = Record::new::<P>(&shape.to_fields());
-            self.lights[end] = light;
-            end += 1;
-            // While the records are in the cache.
-            if end == self.len + GROUP {
-                self.count(end);
-            }
-        }
-        self.count(end);
+        self.add(lights.into_iter());
+    }
+}
+
+/// Copies each shape once less.
+impl<'a, P: Projected + 'a> Extend<(u32, &'a P)> for LightBatch<P> {
+    fn extend<I: IntoIterator<Item = (u32, &'a P)>>(&mut self, lights: I) {
+        self.add(lights.into_iter());
     }
 }
 
