@@ -164,10 +164,11 @@ impl LightLists {
 
     /// Reserves room for half as many lights again if the lists grew. So frames after the first seldom allocate.
     pub(super) fn finish(&mut self) {
-        if self.has_grown {
-            self.room_for(self.len / 2 + LANES);
-            self.has_grown = false;
+        let room = self.len + self.len / 2 + LANES;
+        if self.has_grown && self.lights.len() < room {
+            self.lights.resize(room, 0);
         }
+        self.has_grown = false;
     }
 
     /// Appends the list of `slot`: the first `len` of `lights`, which is longer than that by a vector.
