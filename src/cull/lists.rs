@@ -181,10 +181,15 @@ impl LightLists {
         len: usize,
     ) {
         let room = self.room_for(len + S::u32s::LEN);
-        // A call to copy so few takes longer than this loop.
-        for start in (0..len).step_by(S::u32s::LEN) {
+        // A call to copy so few takes longer than this loop. No branch tells an empty list from a short one.
+        let mut start = 0;
+        loop {
             let vector = S::u32s::from_slice(simd, &lights[start..][..S::u32s::LEN]);
             vector.store_slice(&mut room[start..][..S::u32s::LEN]);
+            start += S::u32s::LEN;
+            if start >= len {
+                break;
+            }
         }
         self.set_range(slot, 0..len);
         self.advance(len);
@@ -193,10 +198,10 @@ impl LightLists {
     /// Sets the list of `slot` to this range of the elements that are not in use.
     #[inline(always)]
     pub(super) fn set_range(&mut self, slot: usize, range: Range<usize>) {
-        // An empty list is [0, 0], so that it does not depend on the lists before it.
-        if !range.is_empty() {
-            self.ranges[slot] = [range.start, range.end].map(|end| (self.len + end) as u32);
-        }
+        // An empty list is [0, 0], so that it does not depend on the lists before it. Not a branch.
+        let if_any = 0_u32.wrapping_sub(u32::from(range.start < range.end));
+        let ends = [self.len + range.start, self.len + range.end];
+        self.ranges[slot] = [ends[0] as u32 & if_any, ends[1] as u32 & if_any];
     }
 
     /// Adds the first `count` elements that are not in use to the lists.
