@@ -21,8 +21,9 @@
 //! | touch | projected bound, tile | [`ProjectedEllipsoid::touches`] |
 //! | cull | many lights, many tiles | a list of lights for each tile: `Culler` (feature `cull`) |
 //!
-//! - Lobes: [`GgxLobe`], [`AnisotropicGgxLobe`], [`LambertLobe`], [`PhongLobe`], [`ConstantLobe`], or any
-//!   type that implements [`Lobe`].
+//! - Lobes: [`GgxLobe`], [`AnisotropicGgxLobe`], [`LambertLobe`], [`PhongLobe`], or any type that implements
+//!   [`Lobe`]. Ordinary lamps have a [`ConstantLobe`] or a [`SpotLobe`]: [`Vpl::point`], [`Vpl::spot`].
+//!   [`DistanceWindow`] is the end that engines give them.
 //! - Bounds: [`Vpl::bound`] gives the recommended bound of a lobe. [`Vpl::bound_by`] takes a strategy:
 //!   [`Tight`], [`Triaxial`] or [`Paper`]. [`HalfSpace`] is the lit side of a surface, and [`Proxy`] is a
 //!   mesh around a bound, to rasterise it.
@@ -156,6 +157,7 @@
 //! - Ericson 2005, *Real-time collision detection*.
 //! - Heitz 2014, *Understanding the masking-shadowing function in microfacet-based BRDFs*.
 //! - Jarzynski & Olano 2020, *Hash functions for GPU rendering*.
+//! - Karis 2013, *Real shading in Unreal Engine 4*.
 //! - Keller 1997, *Instant radiosity*.
 //! - Olsson, Billeter & Assarsson 2012, *Clustered deferred and forward shading*.
 //! - Phong 1975, *Illumination for computer generated pictures*.
@@ -208,11 +210,11 @@ pub use cull::{
 };
 #[cfg(feature = "bytemuck")]
 pub use interop::{GpuEllipsoid, GpuSphere};
-pub use light::{FrameSeed, Roulette, Seed, Vpl, Xi, rank_along_curve};
+pub use light::{DistanceWindow, FrameSeed, Roulette, Seed, Vpl, Xi, rank_along_curve};
 pub use lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel,
     FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, Incidence, LambertLobe, Lobe,
-    MaskingShadowing, NoFresnel, PhongLobe, Schlick, Separable,
+    MaskingShadowing, NoFresnel, PhongLobe, Schlick, Separable, SpotLobe,
 };
 pub use project::{
     Project, Projected, ProjectedBound, ProjectedEllipsoid, ProjectedHalfSpace, ProjectedSphere,

@@ -2,8 +2,8 @@
 
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, DepthInterval, Dielectric,
-    Direction, Ellipsoid, Error, Ggx, Incidence, Interleave, LambertLobe, NoFresnel, PhongLobe,
-    Roulette, Schlick, Sphere, TileGrid, TileRectangle, Vpl, Xi,
+    Direction, DistanceWindow, Ellipsoid, Error, Ggx, Incidence, Interleave, LambertLobe,
+    NoFresnel, PhongLobe, Roulette, Schlick, Sphere, SpotLobe, TileGrid, TileRectangle, Vpl, Xi,
     glam::{Mat3, Mat4, Vec2, Vec3, Vec4},
 };
 
@@ -61,6 +61,16 @@ fn numbers_out_of_range() {
     refuses(&[-1.0, 1e10], |exponent| {
         PhongLobe::about(0.5, exponent, Direction::Z)
     });
+    refuses(&[-1e-9, 3.141_593, 1e10], |outer| {
+        SpotLobe::new(0.0, outer, Direction::Z)
+    });
+    refuses(&[-1e-9, 0.700_000_1, 1e10], |inner| {
+        SpotLobe::new(inner, 0.7, Direction::Z)
+    });
+    refuses(&[0.0, -1.0, 1e-40], DistanceWindow::new);
+    refuses(&[-1.0, -1e-45, 3e37], |intensity| {
+        Vpl::point(one, intensity)
+    });
     refuses(&[0.0, -0.001], Roulette::new);
     refuses(&[0.0, -0.5, 1.000_001], Xi::new);
     refuses(&[-1.0, -1e-45], |flux| Vpl::new(one, flux, ConstantLobe));
@@ -77,6 +87,10 @@ fn edges_of_the_ranges_are_accepted() {
     assert!(Schlick::new(0.0).is_ok() && Schlick::new(1.0).is_ok());
     for exponent in [0.0, 1e-45, PhongLobe::MAX_EXPONENT] {
         assert!(PhongLobe::about(1.0, exponent, Direction::Z).is_ok());
+    }
+    for outer in [0.0, 1e-45, std::f32::consts::PI] {
+        assert!(SpotLobe::new(0.0, outer, Direction::Z).is_ok());
+        assert!(SpotLobe::new(outer, outer, Direction::Z).is_ok());
     }
     assert!(Roulette::new(1e-45).is_ok() && Roulette::new(f32::MAX).is_ok());
     assert!(Xi::new(1.0).is_ok() && Xi::new(1e-45).is_ok());

@@ -6,8 +6,8 @@ use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BoundStrategy, Bounded, BoxTest, Camera,
     Conductor, ConstantLobe, Dielectric, Direction, Ellipsoid, Fresnel, Ggx, GgxLobe, Incidence,
     LambertLobe, LightBatch, Lobe, MaskingShadowing, NoFresnel, OwnBound, Paper, PhongLobe,
-    Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Seed, Sphere, Spheroid, Tight,
-    Triaxial, Vpl, Xi, glam::Vec3,
+    Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Seed, Sphere, Spheroid,
+    SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 use support::generators::{self, Lit, cases, log_uniform};
 
@@ -293,6 +293,12 @@ proptest! {
 
     #[test]
     fn other_lights(frame in frame()) {
+        // From a pencil to all directions.
+        let spot = |light: &Parts| {
+            let outer = std::f32::consts::PI * light.roughness;
+            SpotLobe::new(light.share * outer, outer, light.lit.normal).unwrap()
+        };
+        frame.same_lights(Tight, spot)?;
         let lambert = |light: &Parts| LambertLobe::new(light.share, light.lit.normal).unwrap();
         frame.same_lights(Paper, lambert)?;
         frame.same_lights(Tight, lambert)?;

@@ -33,8 +33,8 @@ fn no_light_is_lost() {
                     .unwrap()
                     .project(&tile.camera);
                 let is_lit = lit_side.touches(&tile.rectangle, &tile.depths);
-                // A point light has no surface.
-                if !is_lit && !matches!(light.brdf, Brdf::Constant) {
+                // A lamp has no surface.
+                if !is_lit && !matches!(light.brdf, Brdf::Constant | Brdf::Spot { .. }) {
                     lost.push("half-space");
                 }
                 assert!(

@@ -7,9 +7,9 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, CullCounters,
-    DepthInterval, Dielectric, Direction, Error, FresnelMajorant, Ggx, GgxLobe, HeightCorrelated,
-    Incidence, Interleave, LambertLobe, NoFresnel, PhongLobe, PixelRectangle, Proxy, Roulette,
-    Schlick, Seed, Separable, TileGrid, TileRectangle, Vpl, Xi,
+    DepthInterval, Dielectric, Direction, DistanceWindow, Error, FresnelMajorant, Ggx, GgxLobe,
+    HeightCorrelated, Incidence, Interleave, LambertLobe, NoFresnel, PhongLobe, PixelRectangle,
+    Proxy, Roulette, Schlick, Seed, Separable, SpotLobe, TileGrid, TileRectangle, Vpl, Xi,
     glam::{Vec2, Vec3},
 };
 use support::generators::{self, cases, log_uniform, up_to_one};
@@ -128,6 +128,9 @@ fn lobes_and_lights_are_saved_with_what_they_are_made_of() -> Result<(), Error> 
         &PhongLobe::new(0.5, 40.0, Incidence { normal, incoming })?,
         plastic,
     );
+    let lamp = json!({ "inner_angle": 0.25, "outer_angle": 2.0, "axis": up });
+    assert_saved(&SpotLobe::new(0.25, 2.0, normal)?, lamp);
+    assert_saved(&DistanceWindow::new(20.0)?, json!({ "radius": 20.0 }));
     let spot = json!({ "albedo": 0.5, "exponent": 40.0, "normal": up, "incoming": null });
     assert_saved(&PhongLobe::about(0.5, 40.0, normal)?, spot);
     Ok(())
@@ -150,6 +153,8 @@ fn lights_and_cameras_that_no_constructor_accepts_are_not_read() -> Result<(), E
     assert_refused::<AnisotropicGgxLobe>(bald, "tangent is [0, 0, 1]");
     let blunt = json!({ "albedo": 0.5, "exponent": -1.0, "normal": up, "incoming": up });
     assert_refused::<PhongLobe>(blunt, "Phong exponent is -1");
+    let inside_out = json!({ "inner_angle": 2.0, "outer_angle": 0.25, "axis": up });
+    assert_refused::<SpotLobe>(inside_out, "inner cone angle is 2");
     let reversed = json!({ "min": [0.0, 0.0], "max": [1.0, -1.0] });
     assert_refused::<TileRectangle>(reversed, "corner of a tile is [1, -1, 1]");
 
@@ -291,6 +296,7 @@ proptest! {
         let phong = PhongLobe::new(f0, exponent, Incidence { normal, incoming }).unwrap();
         comes_back(&Vpl::new(position, flux as f32, phong).unwrap())?;
         comes_back(&PhongLobe::about(f0, exponent, normal).unwrap())?;
+        comes_back(&SpotLobe::new(f0 * along, along, normal).unwrap())?;
         let tangent = Direction::new(tangent.to_f32()).unwrap();
         if let Ok(lobe) = AnisotropicGgxLobe::new(grain, NoFresnel, Incidence { normal, incoming }, tangent) {
             comes_back(&lobe)?;

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Direction, Estimate,
     Fresnel, Ggx, GgxLobe, Incidence, LambertLobe, Lobe, MaskingShadowing, NoFresnel, PhongLobe,
-    PointBlock, RadianceEstimator, Roulette, Schlick, ShadedPoint, ShadingBatch, Vpl, Xi,
+    PointBlock, RadianceEstimator, Roulette, Schlick, ShadedPoint, ShadingBatch, SpotLobe, Vpl, Xi,
     glam::Vec3,
 };
 use support::{
@@ -389,6 +389,12 @@ proptest! {
 
     #[test]
     fn other_lights(frame in frame()) {
+        // From a pencil to all directions.
+        let spot = |light: &Parts| {
+            let outer = std::f32::consts::PI * light.roughness;
+            SpotLobe::new(light.share * outer, outer, light.lit.normal).unwrap()
+        };
+        frame.same(spot)?;
         frame.same(|light| LambertLobe::new(light.share, light.lit.normal).unwrap())?;
         frame.same(|_| ConstantLobe)?;
         // From flat to as narrow as may be.

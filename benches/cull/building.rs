@@ -4,9 +4,9 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, measurement::WallTime};
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, Camera, Direction, Fresnel, Ggx, GgxLobe,
-    Incidence, LambertLobe, LightBatch, Lobe, NoFresnel, Paper, Projected, Roulette, Schlick, Seed,
-    Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, Bounded, Camera, ConstantLobe, Direction,
+    Fresnel, Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, Lobe, NoFresnel, Paper, Projected,
+    Roulette, Schlick, Seed, SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 use support::workload;
 
@@ -122,6 +122,48 @@ pub fn building(criterion: &mut Criterion) {
         |light, xi| light.bound(&roulette, xi).project(&camera),
         |lights, batch| builder.add(indexed(lights), batch),
     );
+
+    let lamps = lights(|_, _| ConstantLobe);
+    build(
+        &mut group,
+        "point",
+        &lamps,
+        |light, xi| light.bound(&roulette, xi).project(&camera),
+        |lights, batch| builder.add(indexed(lights), batch),
+    );
+    let spots = lights(|i, incidence| {
+        // Every way to bound one, in each vector.
+        let outer = [20.0_f32, 45.0, 60.0, 80.0, 110.0, 150.0][i as usize % 6].to_radians();
+        let inner = [0.0, 0.3, 0.6, 0.8, 1.0][i as usize % 5] * outer;
+        SpotLobe::new(inner, outer, incidence.normal).expect("in order")
+    });
+    build(
+        &mut group,
+        "spot",
+        &spots,
+        |light, xi| light.bound(&roulette, xi).project(&camera),
+        |lights, batch| builder.add(indexed(lights), batch),
+    );
+    let kept: Vec<_> = spots
+        .iter()
+        .map(|(light, _)| light.lobe().unit_bound())
+        .collect();
+    let mut batch = LightBatch::new();
+    group.bench_function("spot, kept bounds, batched", |bencher| {
+        bencher.iter(|| {
+            batch.clear();
+            let placed = (0..).zip(black_box(&spots)).zip(&kept);
+            let placed = placed.map(|((i, (light, xi)), bound)| {
+                (
+                    i,
+                    bound,
+                    light.position(),
+                    roulette.scale(light.flux(), *xi),
+                )
+            });
+            builder.add_placed(placed, &mut batch);
+        });
+    });
 
     let diffuse = lights(|_, incidence| LambertLobe::new(0.8, incidence.normal).expect("in range"));
     build(

@@ -6,6 +6,7 @@
 
 mod baseline;
 mod building;
+mod cones;
 mod growth;
 mod polyhedron;
 
@@ -229,5 +230,12 @@ fn count<T>(pairs: &[T], test: impl Fn(&T) -> bool) -> usize {
     pairs.iter().filter(|pair| test(black_box(pair))).count()
 }
 
-criterion_group!(benches, building::building, exact, workloads, growth);
+criterion_group!(
+    benches,
+    building::building,
+    cones::cones,
+    exact,
+    workloads,
+    growth
+);
 criterion_main!(benches);

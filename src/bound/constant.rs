@@ -15,7 +15,7 @@ impl BoundStrategy<ConstantLobe> for Paper {
     type Shape = Sphere;
 
     fn unit_bound(&self, _: &ConstantLobe) -> Sphere {
-        let radius = round_up(sqrt(ConstantLobe::VALUE), RADIUS_ROUNDINGS);
+        let radius = round_up(sqrt(ConstantLobe::PEAK), RADIUS_ROUNDINGS);
         Sphere::from_parts(Vec3::ZERO, radius)
     }
 

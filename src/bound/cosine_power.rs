@@ -42,24 +42,11 @@
 //! z₁ = p/(1 + 2p + 0.6p(1−p)) it is within 4·10⁻⁵ of that. For m = 0, half a ball, z₁ = 0, a = ¾ and
 //! b² = 9/8.
 
-use super::Ellipsoids;
-use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3, power};
+use super::revolved::Revolved;
+use crate::num::{Single, power};
 
 /// Pays for the error of the polynomial for z₁.
 const RING_ROUNDINGS: u16 = 24;
-/// Pays for the rounding of axis, frame and centre, in units of u times longest over shortest semi-axis.
-const AXES_TILT_ROUNDINGS: f32 = 16.0;
-/// Pays for the rounding of the semi-axes and of the reach.
-const SEMI_AXIS_ROUNDINGS: u16 = 64;
-
-/// An ellipsoid of revolution in each lane, for lobes that extend by 1 along their axis.
-#[derive(Clone, Copy)]
-pub(super) struct Revolved<N> {
-    /// The distance of the centre from the light, along the axis.
-    center: N,
-    along: N,
-    across: N,
-}
 
 impl<N: Single> Revolved<N> {
     /// The smallest ellipsoid around √cosθ, in as many lanes as `like` has. z₁ = w³, where w = 0.6496 is the
@@ -84,17 +71,7 @@ impl<N: Single> Revolved<N> {
         if N::is_known_false(!is_broad) {
             return at_tip;
         }
-        let at_light = Self::at_light(exponent);
-        let [center, along, across] = N::select_all(
-            is_broad,
-            [at_tip.center, at_tip.along, at_tip.across],
-            [at_light.center, at_light.along, at_light.across],
-        );
-        Self {
-            center,
-            along,
-            across,
-        }
+        Self::select(is_broad, at_tip, Self::at_light(exponent))
     }
 
     /// The ellipsoid with the light as a pole, for `exponent` = n ≥ 2.
@@ -148,21 +125,6 @@ impl<N: Single> Revolved<N> {
             center: along.one_minus(),
             along,
             across: along * (power * share / (rest * s)).sqrt(),
-        }
-    }
-
-    /// The ellipsoid along `axis` for a lobe that extends by `reach` > 0, rounded outward.
-    #[inline(always)]
-    pub fn along(self, axis: Vector3<N>, reach: N) -> Ellipsoids<N> {
-        let (v, w) = axis.any_orthonormal_pair();
-        let semi_axes = Vector3::new(self.along, self.across, self.across);
-        // By how far the rounding of axis, frame and centre moves a point, over the shortest semi-axis.
-        let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
-        let moved = longest * (AXES_TILT_ROUNDINGS * UNIT_ROUNDOFF) / shortest;
-        Ellipsoids {
-            parts: [Vector3::zero(reach), axis * (self.center * reach)],
-            axes: Matrix3::new(axis, v, w),
-            semi_axes: semi_axes * (reach * (moved + 1.0)).round_up(SEMI_AXIS_ROUNDINGS),
         }
     }
 }

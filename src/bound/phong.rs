@@ -1,5 +1,5 @@
-use super::cosine_power::Revolved;
 use super::ellipsoid::Ellipsoids;
+use super::revolved::Revolved;
 use super::shape::{Quads, padded};
 use super::{BoundStrategy, Bounded, Ellipsoid, Tight};
 use crate::lobe::PhongLobe;

@@ -152,7 +152,8 @@ pub struct Paper;
 pub struct Triaxial;
 
 /// The strategy of the smallest ellipsoid, or nearly: from a table for a [`GgxLobe`](crate::GgxLobe), in
-/// closed form for a [`PhongLobe`](crate::PhongLobe) and a [`LambertLobe`](crate::LambertLobe).
+/// closed form for a [`PhongLobe`](crate::PhongLobe), a [`SpotLobe`](crate::SpotLobe) and a
+/// [`LambertLobe`](crate::LambertLobe).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tight;
 

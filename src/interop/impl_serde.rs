@@ -6,10 +6,10 @@ use glam::{Mat3, Vec3};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 use crate::base::{Direction, Error};
-use crate::light::{Roulette, Vpl, Xi};
+use crate::light::{DistanceWindow, Roulette, Vpl, Xi};
 use crate::lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, Dielectric, Fresnel, Ggx, GgxLobe, Incidence,
-    LambertLobe, Lobe, PhongLobe, Schlick,
+    LambertLobe, Lobe, PhongLobe, Schlick, SpotLobe,
 };
 use crate::view::{Camera, CameraParts, DepthInterval, Interleave, TileGrid, TileRectangle};
 
@@ -71,6 +71,12 @@ saved! {
         Some(incoming) => PhongLobe::new(albedo, exponent, Incidence { normal, incoming }),
         None => PhongLobe::about(albedo, exponent, normal),
     };
+    |lobe| SpotLobe {
+        inner_angle: f32 = lobe.inner_angle(),
+        outer_angle: f32 = lobe.outer_angle(),
+        axis: Direction = lobe.axis()
+    } => SpotLobe::new(inner_angle, outer_angle, axis);
+    |window| DistanceWindow { radius: f32 = window.radius() } => DistanceWindow::new(radius);
     |roulette| Roulette { delta: f32 = roulette.delta() } => Roulette::new(delta);
     |schlick| Schlick { f0: f32 = schlick.f0() } => Schlick::new(f0);
     |grid| TileGrid { image_size: [u32; 2] = grid.image_size(), tile_size: u32 = grid.tile_size() } =>

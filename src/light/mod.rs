@@ -3,6 +3,7 @@
 mod curve;
 mod roulette;
 mod vpl;
+mod window;
 mod xi;
 
 pub use curve::rank_along_curve;
@@ -10,4 +11,5 @@ pub use roulette::Roulette;
 pub use vpl::Vpl;
 #[cfg(feature = "cull")]
 pub(crate) use vpl::unit;
+pub use window::DistanceWindow;
 pub use xi::{FrameSeed, Seed, Xi};

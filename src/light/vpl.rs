@@ -1,7 +1,9 @@
+use core::f32::consts::PI;
+
 use glam::Vec3;
 
 use crate::base::{Error, finite, number_in};
-use crate::lobe::Lobe;
+use crate::lobe::{ConstantLobe, Lobe, SpotLobe};
 use crate::num::{Real, Single, Vector3};
 
 /// A virtual point light: a lit surface point that lights others [Keller 1997].
@@ -82,6 +84,69 @@ impl<L: Lobe> Vpl<L> {
     pub fn radiant_intensity(&self, outgoing: Vec3) -> f32 {
         self.flux * self.lobe.value(outgoing)
     }
+}
+
+impl Vpl<ConstantLobe> {
+    /// Creates a point light of `intensity` = I at `position`: the same intensity in every direction. Its flux is
+    /// 4πI.
+    ///
+    /// In W/sr or in candela, the unit of glTF. With I in candela the flux is in lumens, the unit of Bevy and
+    /// Filament; who has lumens calls [`new`](Self::new). L = I/l² is then the illuminance in lux of a surface that
+    /// faces the light, and so is δ. For coloured light I is the luminance of the colour times its intensity, and
+    /// a channel of the estimate is that of the light times the channel over that luminance.
+    ///
+    /// The radiance of a light that is a ball is I/l² too, from its surface on. Within its radius take l to be
+    /// that radius, as engines do
+    #[cfg_attr(
+        feature = "cull",
+        doc = "([`with_least_distance_squared`](crate::RadianceEstimator::with_least_distance_squared))."
+    )]
+    #[cfg_attr(not(feature = "cull"), doc = "(`RadianceEstimator` does so).")]
+    /// Bounds stay valid, since that only dims it.
+    ///
+    /// ```
+    /// use stochastic_light_culling::{Roulette, Vpl, Xi, glam::Vec3};
+    ///
+    /// // An orange lamp of 80 cd, whose colour has the luminance 0.56.
+    /// let (colour, luminance) = (Vec3::new(1.0, 0.5, 0.1), 0.56);
+    /// let lamp = Vpl::point(Vec3::new(0.0, 2.0, 0.0), 80.0 * luminance)?;
+    /// let (direction, squared) = lamp.direction_to(Vec3::ZERO);
+    /// let (roulette, xi) = (Roulette::new(0.5)?, Xi::new(0.5)?); // δ = 0.5 lx
+    /// let estimate = roulette.estimate(lamp.radiant_intensity(direction), squared, xi);
+    /// let illuminance = colour / luminance * estimate;
+    /// assert!((illuminance - colour * 20.0).length() < 1e-4);
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new). The flux must be finite too.
+    pub fn point(position: Vec3, intensity: f32) -> Result<Self, Error> {
+        Self::new(position, flux(intensity)?, ConstantLobe)
+    }
+}
+
+impl Vpl<SpotLobe> {
+    /// Creates a spot light whose intensity within its inner cone is `intensity` = I. Its flux is 4πI, that of a
+    /// point light of the same intensity, of which the cones let the share
+    /// [`emitted_share`](SpotLobe::emitted_share) through.
+    ///
+    /// Units and colour are those of [`Vpl::point`]. Lumens of Bevy, which do not depend on the cones, are the
+    /// flux itself. Lumens that are emitted in all are the flux times the share.
+    ///
+    /// # Errors
+    ///
+    /// As [`Vpl::point`].
+    pub fn spot(position: Vec3, intensity: f32, lobe: SpotLobe) -> Result<Self, Error> {
+        Self::new(position, flux(intensity)?, lobe)
+    }
+}
+
+/// The flux 4πI of a light with the same `intensity` = I in every direction.
+fn flux(intensity: f32) -> Result<f32, Error> {
+    let most = f32::MAX / (4.0 * PI);
+    let valid = "not negative, and finite times 4π";
+    number_in("intensity", intensity, valid, 0.0..=most).map(|intensity| 4.0 * PI * intensity)
 }
 
 /// The smallest length that a vector is divided by, 2⁻⁶³. Squares of smaller ones lose digits.

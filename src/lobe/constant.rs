@@ -6,7 +6,8 @@ use super::{Lobe, LobeNumbers};
 use crate::num::{Single, Vector3};
 
 /// A lobe with the same value 1/(4π) sr⁻¹ in every direction: the ordinary point light of engines
-/// [Tokuyoshi & Harada 2016]. Its radiant intensity is its flux over 4π.
+/// [Tokuyoshi & Harada 2016]. Its radiant intensity is its flux over 4π. [`Vpl::point`](crate::Vpl::point) takes
+/// an intensity, and says what about units and colour.
 ///
 /// ```
 /// use stochastic_light_culling::{ConstantLobe, Roulette, Vpl, Xi, glam::Vec3};
@@ -23,13 +24,13 @@ pub struct ConstantLobe;
 
 impl ConstantLobe {
     /// The value 1/(4π) in sr⁻¹.
-    pub(crate) const VALUE: f32 = 0.25 * FRAC_1_PI;
+    pub const PEAK: f32 = 0.25 * FRAC_1_PI;
 }
 
 impl Lobe for ConstantLobe {
     #[inline]
     fn value(&self, _outgoing: Vec3) -> f32 {
-        Self::VALUE
+        Self::PEAK
     }
 
     fn has_more_than_numbers() -> bool {
@@ -42,6 +43,6 @@ impl Lobe for ConstantLobe {
         _: impl Fn(usize) -> Option<&'a Self>,
         outgoing: Vector3<N>,
     ) -> N {
-        outgoing.x.splat(Self::VALUE)
+        outgoing.x.splat(Self::PEAK)
     }
 }

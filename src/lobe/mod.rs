@@ -1,4 +1,4 @@
-//! Lobes: what a surface reflects. Microfacet terms, Fresnel factors, and the lobes that they make.
+//! Lobes: what a surface reflects or a lamp emits. Microfacet terms, Fresnel factors, and the lobes that they make.
 
 mod anisotropic_ggx;
 mod anisotropic_ggx_lobe;
@@ -14,6 +14,7 @@ mod lambert;
 mod lanes_tests;
 mod masking;
 mod phong;
+mod spot;
 
 pub use anisotropic_ggx::AnisotropicGgx;
 pub use anisotropic_ggx_lobe::AnisotropicGgxLobe;
@@ -29,6 +30,7 @@ pub use incidence::Incidence;
 pub use lambert::LambertLobe;
 pub use masking::{HeightCorrelated, MaskingShadowing, Separable};
 pub use phong::PhongLobe;
+pub use spot::SpotLobe;
 
 use glam::Vec3;
 

@@ -5,9 +5,9 @@ use std::hint::black_box;
 use fastrand::Rng;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Camera, Conductor, ConstantLobe, DepthInterval,
-    Dielectric, Direction, Ellipsoid, Fresnel, FresnelMajorant, Ggx, GgxLobe, Incidence,
-    Interleave, LambertLobe, Lobe, NoFresnel, Paper, PhongLobe, PixelRectangle, Proxy, Roulette,
-    Schlick, Seed, Sphere, Tight, TileGrid, TileRectangle, Triaxial, Vpl, Xi,
+    Dielectric, Direction, DistanceWindow, Ellipsoid, Fresnel, FresnelMajorant, Ggx, GgxLobe,
+    Incidence, Interleave, LambertLobe, Lobe, NoFresnel, Paper, PhongLobe, PixelRectangle, Proxy,
+    Roulette, Schlick, Seed, Sphere, SpotLobe, Tight, TileGrid, TileRectangle, Triaxial, Vpl, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
 use support::adversary::{Light, Tile};
@@ -145,6 +145,22 @@ fn others(bits: &mut Bits, cameras: &[Camera]) {
             probe::light(lobe, cameras);
         }
     }
+    if let Some([axis, _]) = directions(bits) {
+        if let Ok(lobe) = SpotLobe::new(bits.number(), bits.number(), axis) {
+            probe::saved(&lobe);
+            for lobe in [lobe, lobe.hard_edged(), lobe.with_axis(-axis)] {
+                assert!((0.0..=1.0).contains(&lobe.emitted_share()));
+                probe::light(lobe, cameras);
+            }
+        }
+        if let Ok(window) = DistanceWindow::new(bits.number()) {
+            probe::saved(&window);
+            let scale = bits.number();
+            assert!((0.0..=1.0).contains(&window.factor(bits.number().abs())));
+            assert!(scale.is_nan() || window.limit(SpotLobe::PEAK, scale) <= scale);
+        }
+        let _ = (Vpl::point(bits.vector(), bits.number()), bits.number());
+    }
     if let (Ok(roulette), Ok(xi)) = (Roulette::new(bits.number()), Xi::new(bits.number())) {
         probe::roulette(&roulette, xi);
         let seed = Seed(bits.word()).subregion(bits.word());
@@ -274,6 +290,9 @@ pub fn light_in_domain(bits: &mut Bits) {
     let brdf = match bits.byte() % 8 {
         0 if LambertLobe::new(albedo, Direction::Z).is_ok() => Brdf::Lambert { albedo },
         1 => Brdf::Constant,
+        2 if SpotLobe::new(roughness, albedo, Direction::Z).is_ok() => {
+            Brdf::spot([roughness, albedo])
+        }
         2..5 => {
             let [along, across] = [roughness, bits.number()];
             let Ok(tangent) = Direction::new(bits.vector()) else {

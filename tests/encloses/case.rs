@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Conductor, ConstantLobe, Dielectric, Direction,
     Ellipsoid, Ggx, GgxLobe, Incidence, LambertLobe, MaskingShadowing, NoFresnel, Paper, PhongLobe,
-    Roulette, Schlick, Spheroid, Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    Roulette, Schlick, Spheroid, SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 use support::generators::{self, Lit};
 use support::reference::{Brdf, Fresnel, GivenFresnel, MaskedAlone, Masking, Shape, Vector};
@@ -177,6 +177,15 @@ impl Case {
                 .unwrap();
                 vec![("ellipsoid of Phong's lobe", self.bound(lobe).into())]
             }
+            Brdf::Spot { angles, .. } => {
+                let [inner, outer] = angles;
+                let lobe = SpotLobe::new(inner, outer, self.lit.normal).unwrap();
+                let [tight, hard] = [lobe, lobe.hard_edged()].map(|lobe| self.bound(lobe).into());
+                vec![
+                    ("ellipsoid of a spot light", tight),
+                    ("ellipsoid of its outer cone", hard),
+                ]
+            }
             Brdf::Constant => vec![("sphere of a point light", self.bound(ConstantLobe).into())],
         }
     }
@@ -202,6 +211,18 @@ impl Case {
         } = self.brdf
         {
             directions.extend(surface.mirrored_by_facets(roughness, tangent));
+        }
+        if let Brdf::Spot { angles, .. } = self.brdf {
+            let [inner, outer] = angles.map(f64::from);
+            let side = surface.normal.orthogonal();
+            for step in 0..=64 {
+                let share = f64::from(step) / 64.0;
+                for angle in [inner * share, inner + (outer - inner) * share] {
+                    let azimuth = 2.399_963 * f64::from(step);
+                    let side = side.turned(surface.normal.cross(side), azimuth);
+                    directions.push(surface.normal.turned(side, angle));
+                }
+            }
         }
         for step in 0..48 {
             // Even in the half angle's tangent over α, so that narrow lobes are covered too.

@@ -19,6 +19,11 @@ impl Exposure {
         let white = brightest.get(brightest.len() * 98 / 100).unwrap_or(&1.0);
         Self(2.0 / white)
     }
+
+    /// The exposure at which a radiance of `white` is nearly white.
+    pub fn with_white(white: f32) -> Self {
+        Self(2.0 / white)
+    }
 }
 
 /// The sRGB picture of `radiance`, row by row.

@@ -1,7 +1,7 @@
 //! Inputs for the property tests, drawn more often where things break: at the ends of each range,
 //! near one, at grazing and at normal incidence.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use proptest::prelude::*;
 use stochastic_light_culling::{
@@ -182,6 +182,29 @@ pub fn exponent() -> impl Strategy<Value = f32> {
     exponent.prop_map(|x: f64| x as f32)
 }
 
+/// Inner and outer half angle of a spot light, from 10⁻³ rad to 180°: hard edges, none, and those about 90°.
+pub fn cone_angles() -> impl Strategy<Value = [f32; 2]> {
+    let about_half = (log_uniform(1e-7, 1.0), any::<bool>())
+        .prop_map(|(gap, above)| FRAC_PI_2 + if above { gap } else { -gap });
+    let outer = prop_oneof![
+        2 => log_uniform(1e-3, PI),
+        4 => 1e-3..PI,
+        2 => about_half,
+        1 => Just(FRAC_PI_2),
+        1 => Just(PI),
+    ];
+    let share = prop_oneof![
+        4 => 0.0..=1.0,
+        1 => Just(0.0),
+        1 => Just(1.0),
+        1 => log_uniform(1e-7, 0.5).prop_map(|gap| 1.0 - gap),
+    ];
+    (outer, share).prop_map(|(outer, share)| {
+        let outer = (outer as f32).min(std::f32::consts::PI);
+        [(share as f32 * outer).min(outer), outer]
+    })
+}
+
 pub fn brdf() -> impl Strategy<Value = Brdf> {
     let albedo = || prop_oneof![3 => 0.001..=1.0_f32, 1 => Just(1.0_f32)];
     let phong = (albedo(), exponent());
@@ -191,6 +214,7 @@ pub fn brdf() -> impl Strategy<Value = Brdf> {
         2 => albedo().prop_map(|albedo| Brdf::Lambert { albedo }),
         4 => phong.prop_map(|(albedo, exponent)| Brdf::Phong { albedo, exponent }),
         1 => Just(Brdf::Constant),
+        4 => cone_angles().prop_map(Brdf::spot),
     ]
 }
 

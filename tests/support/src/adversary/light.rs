@@ -1,12 +1,13 @@
 //! Lights from the whole domain, and how far they reach.
 
+use std::f32::consts::PI;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use fastrand::Rng;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Conductor, ConstantLobe, Dielectric, Direction,
     Ggx, GgxLobe, Incidence, LambertLobe, MaskingShadowing, NoFresnel, Paper, PhongLobe, Roulette,
-    Schlick, Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    Schlick, SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 use twofloat::TwoFloat as Real;
 
@@ -42,7 +43,8 @@ impl Light {
                 albedo: up_to_one(rng, 1e-6) as f32,
                 exponent: exponent(rng),
             },
-            4..9 => Brdf::Anisotropic {
+            4..6 => Brdf::spot(cone_angles(rng)),
+            6..10 => Brdf::Anisotropic {
                 roughness: two_roughnesses(rng),
                 tangent: direction(unit_vector(rng)),
                 fresnel: fresnel(rng),
@@ -95,7 +97,7 @@ impl Light {
     pub fn peak(&self) -> Exact {
         let (n, w) = (self.unit_normal(), self.unit_incoming());
         match self.brdf {
-            Brdf::Lambert { .. } | Brdf::Constant => n,
+            Brdf::Lambert { .. } | Brdf::Constant | Brdf::Spot { .. } => n,
             _ => n * (n.dot(w) * 2.0) - w,
         }
     }
@@ -120,6 +122,7 @@ impl Light {
         match rng.u8(0..10) {
             0 => self.peak().unit(),
             1 => exact(unit_vector(rng)).unit(),
+            3.. if matches!(self.brdf, Brdf::Spot { .. }) => self.in_cones(rng),
             3..6 if matches!(self.brdf, Brdf::Anisotropic { .. }) => self.mirrored_by_facet(rng),
             2 => {
                 let tangent = normal.cross(unit_vector(rng));
@@ -155,6 +158,31 @@ impl Light {
         (peak * (Real::from(1.0) - t * t) + side * (t * 2.0)).unit()
     }
 
+    /// Anywhere in the outer cone of a spot light, often next to the edge of either.
+    fn in_cones(&self, rng: &mut Rng) -> Exact {
+        let Brdf::Spot { angles, .. } = self.brdf else {
+            return self.peak().unit();
+        };
+        let [inner, outer] = angles.map(f64::from);
+        let off = log_uniform(rng, 1e-12, 0.1);
+        let angle = match rng.u8(0..8) {
+            0 => outer * (1.0 - off),
+            1 => inner * (1.0 - off),
+            2 => inner * (1.0 + off),
+            3 => inner + (outer - inner) * off,
+            4 => inner,
+            5 => inner * rng.f64(),
+            _ => inner + (outer - inner) * rng.f64(),
+        };
+        let normal = Vector::from(*self.normal);
+        let side = normal.orthogonal();
+        let side = side.turned(normal.cross(side).unit(), rng.f64() * TAU);
+        let side = Exact(side.0.map(Real::from));
+        let t = Real::from((0.5 * angle).tan());
+        let peak = self.peak();
+        (peak * (Real::from(1.0) - t * t) + side * (t * 2.0)).unit()
+    }
+
     /// Where a facet mirrors the light that is any of those that the roughness spreads evenly, often
     /// one that leans along the tangent or the bitangent only.
     fn mirrored_by_facet(&self, rng: &mut Rng) -> Exact {
@@ -180,6 +208,11 @@ impl Light {
     pub fn bound(&self) -> Bound {
         match self.brdf {
             Brdf::Constant => Bound::Sphere(self.bound_of(ConstantLobe)),
+            Brdf::Spot { angles, .. } => {
+                let [inner, outer] = angles;
+                let lobe = SpotLobe::new(inner, outer, self.normal).expect("in the domain");
+                Bound::Spot(self.bound_of(lobe))
+            }
             Brdf::Lambert { albedo } => {
                 let lobe = LambertLobe::new(albedo, self.normal).expect("in the domain");
                 let light = Vpl::new(self.position, self.flux, lobe).expect("in the domain");
@@ -313,6 +346,25 @@ fn two_roughnesses(rng: &mut Rng) -> [f32; 2] {
         [other, alpha]
     };
     pair.map(|alpha| alpha as f32)
+}
+
+/// Inner and outer half angle of a spot light: from 10⁻³ to π, hard edges and none among them.
+fn cone_angles(rng: &mut Rng) -> [f32; 2] {
+    let outer = match rng.u8(0..6) {
+        0 => PI,
+        1 => FRAC_PI_2 as f32,
+        2 => log_uniform(rng, 1e-3, 3.0) as f32,
+        // About the angle from which on light is emitted backwards.
+        3 => (FRAC_PI_2 + log_uniform(rng, 1e-7, 1.0)) as f32,
+        _ => PI * rng.f32(),
+    };
+    let inner = match rng.u8(0..6) {
+        0 => outer,
+        1 => 0.0,
+        2 => outer * (1.0 - log_uniform(rng, 1e-7, 0.5) as f32),
+        _ => outer * rng.f32(),
+    };
+    [inner.min(outer), outer]
 }
 
 fn masking(rng: &mut Rng) -> Masking {

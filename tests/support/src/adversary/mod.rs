@@ -27,6 +27,7 @@ pub enum Bound {
         tight: Ellipsoid,
     },
     Sphere(Sphere),
+    Spot(Ellipsoid),
 }
 
 impl Bound {
@@ -56,6 +57,7 @@ impl Bound {
         let found = match *self {
             Self::Sphere(bound) => vec![("sphere", sphere(bound))],
             Self::Anisotropic(bound) => vec![("anisotropic ellipsoid", ellipsoid(bound))],
+            Self::Spot(bound) => vec![("ellipsoid of a spot light", ellipsoid(bound))],
             Self::Phong(bound) => vec![("ellipsoid of Phong's lobe", ellipsoid(bound))],
             Self::Lambert {
                 sphere: bound,

@@ -69,6 +69,20 @@ pub fn value(brdf: Brdf, normal: Exact, incoming: Exact, outgoing: Exact) -> Rea
     let (mu, mu_o) = (normal.dot(incoming), normal.dot(outgoing));
     match brdf {
         Brdf::Constant => Real::from(0.25) / PI,
+        Brdf::Spot { versines, .. } => {
+            let [inner, outer] = versines.map(|x| Real::from(f64::from(x)));
+            let off = outgoing - normal;
+            let versine = off.dot(off) * 0.5;
+            if versine >= outer {
+                return zero;
+            }
+            let peak = Real::from(0.25) / PI;
+            if versine <= inner {
+                return peak;
+            }
+            let transition = (outer - versine) / (outer - inner);
+            peak * transition * transition
+        }
         _ if mu_o <= zero => zero,
         Brdf::Lambert { albedo } => mu_o * f64::from(albedo) / PI,
         _ if mu <= zero => zero,

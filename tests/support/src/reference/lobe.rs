@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use stochastic_light_culling::Direction;
+use stochastic_light_culling::{Direction, SpotLobe};
 
 use super::{Fresnel, Vector};
 
@@ -37,9 +37,25 @@ pub enum Brdf {
     },
     /// No BRDF, but the intensity of a point light: 1/(4π) everywhere.
     Constant,
+    /// No BRDF either, but a spot light along the normal: its inner and outer angle, and 1 − cos of both as
+    /// the crate has them.
+    Spot {
+        angles: [f32; 2],
+        versines: [f32; 2],
+    },
 }
 
 impl Brdf {
+    /// A spot light with the half angles `angles`, the first no larger than the second.
+    pub fn spot(angles: [f32; 2]) -> Self {
+        let [inner, outer] = angles;
+        let lobe = SpotLobe::new(inner, outer, Direction::Z).expect("angles in order");
+        Self::Spot {
+            angles,
+            versines: lobe.versines(),
+        }
+    }
+
     /// The same with another tangent, if it has one that is nearly parallel to `normal`.
     pub fn laid_on(self, normal: Vector) -> Self {
         match self {
@@ -100,6 +116,17 @@ impl Surface {
         let (mu, mu_o) = (self.incident_cosine(), self.normal.dot(outgoing));
         match brdf {
             Brdf::Constant => 1.0 / (4.0 * PI),
+            Brdf::Spot { versines, .. } => {
+                let [inner, outer] = versines.map(f64::from);
+                // Of the angle's half, since the cosine has few digits near the axis.
+                let versine = 0.5 * (outgoing - self.normal).length().powi(2);
+                let transition = ((outer - versine) / (outer - inner)).min(1.0);
+                if versine < outer {
+                    transition.powi(2) / (4.0 * PI)
+                } else {
+                    0.0
+                }
+            }
             _ if mu_o <= 0.0 => 0.0,
             Brdf::Lambert { albedo } => f64::from(albedo) / PI * mu_o,
             _ if mu <= 0.0 => 0.0,
