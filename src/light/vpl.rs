@@ -96,13 +96,8 @@ impl Vpl<ConstantLobe> {
     /// a channel of the estimate is that of the light times the channel over that luminance.
     ///
     /// The radiance of a light that is a ball is I/l² too, from its surface on. Within its radius take l to be
-    /// that radius, as engines do
-    #[cfg_attr(
-        feature = "cull",
-        doc = "([`with_least_distance_squared`](crate::RadianceEstimator::with_least_distance_squared))."
-    )]
-    #[cfg_attr(not(feature = "cull"), doc = "(`RadianceEstimator` does so).")]
-    /// Bounds stay valid, since that only dims it.
+    /// that radius, as engines do (`RadianceEstimator::with_least_distance_squared`, feature `cull`). Bounds stay
+    /// valid, since that only dims the light.
     ///
     /// ```
     /// use stochastic_light_culling::{Roulette, Vpl, Xi, glam::Vec3};
