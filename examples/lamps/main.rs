@@ -32,7 +32,7 @@ struct Arguments {
     lamps: u32,
 
     /// The exposure value at ISO 100: how bright white is
-    #[arg(long, default_value_t = 2.0, value_parser = clap::value_parser!(f32))]
+    #[arg(long, default_value_t = 3.5)]
     ev100: f32,
 
     /// δ as a share of the illuminance at which white paper is white

@@ -100,10 +100,6 @@ impl Picture {
     }
 }
 
-fn xi(seed: u32, frame: u32, index: u32) -> Xi {
-    Seed(seed).frame(frame).xi(index)
-}
-
 /// A frame by roulette: `seed` is another for each kind of lamp.
 pub fn by_roulette<L>(
     view: &View,
@@ -117,10 +113,11 @@ where
     ProjectedBound<L>: stochastic_light_culling::BoxTest,
 {
     let mut batch = LightBatch::new();
+    let seed = Seed(seed).frame(frame);
     let with_xi = || {
         (0..)
-            .zip(&lamps.lights)
-            .map(|(i, lamp)| (i, lamp, xi(seed, frame, i)))
+            .zip(lamps.lights.iter().zip(&lamps.ranks))
+            .map(|(i, (lamp, rank))| (i, lamp, seed.xi_of_rank(*rank)))
     };
     BatchBuilder::new(roulette, &view.camera).add(with_xi(), &mut batch);
     let mut lists = LightLists::new();

@@ -1,7 +1,7 @@
 //! A street at night: what each pixel shows, and the lamps.
 
 use stochastic_light_culling::{
-    Camera, ConstantLobe, Direction, Error, Seed, SpotLobe, Vpl, glam::Vec3,
+    Camera, ConstantLobe, Direction, Error, Lobe, Seed, SpotLobe, Vpl, glam::Vec3, rank_along_curve,
 };
 
 /// What a pixel shows.
@@ -13,10 +13,29 @@ pub struct Surface {
     pub albedo: f32,
 }
 
-/// A light and its colour, of luminance 1.
+/// Lights, their colours of luminance 1, and their ranks along a curve, for ξ that are spread.
 pub struct Lamps<L> {
     pub lights: Vec<Vpl<L>>,
     pub colours: Vec<Vec3>,
+    pub ranks: Vec<u32>,
+}
+
+impl<L: Lobe> Lamps<L> {
+    fn new() -> Self {
+        Self {
+            lights: Vec::new(),
+            colours: Vec::new(),
+            ranks: Vec::new(),
+        }
+    }
+
+    fn ranked(mut self) -> Result<Self, Error> {
+        let positions: Vec<Vec3> = self.lights.iter().map(Vpl::position).collect();
+        let mut scratch = vec![0; 2 * positions.len()];
+        self.ranks = vec![0; positions.len()];
+        rank_along_curve(&positions, &mut self.ranks, &mut scratch)?;
+        Ok(self)
+    }
 }
 
 const HALF_WIDTH: f32 = 14.0;
@@ -84,14 +103,7 @@ pub fn seen(camera: &Camera, size: [u32; 2], pixel: [u32; 2]) -> Option<Surface>
 /// `count` lamps that emit the same in all, however many: half of them pendants, a quarter lanterns on the walls
 /// that shine back along these, and a quarter small coloured bulbs near the ground.
 pub fn lamps(count: u32, seed: u32) -> Result<(Lamps<SpotLobe>, Lamps<ConstantLobe>), Error> {
-    let mut spots = Lamps {
-        lights: Vec::new(),
-        colours: Vec::new(),
-    };
-    let mut bulbs = Lamps {
-        lights: Vec::new(),
-        colours: Vec::new(),
-    };
+    let (mut spots, mut bulbs) = (Lamps::new(), Lamps::new());
     let share = 1000.0 / count.max(1) as f32;
     for i in 0..count {
         let random = |frame| Seed(seed).frame(frame).hashed_xi(i).get();
@@ -127,7 +139,7 @@ pub fn lamps(count: u32, seed: u32) -> Result<(Lamps<SpotLobe>, Lamps<ConstantLo
             }
         }
     }
-    Ok((spots, bulbs))
+    Ok((spots.ranked()?, bulbs.ranked()?))
 }
 
 /// `rgb` over its luminance.
