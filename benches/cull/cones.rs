@@ -50,7 +50,7 @@ struct Clusters {
     columns: Vec<[f32; 2]>,
     rows: Vec<[f32; 2]>,
     slices: Vec<[f32; 2]>,
-    clusters: Vec<Cluster>,
+    all: Vec<Cluster>,
     lists: Vec<Vec<u32>>,
 }
 
@@ -59,7 +59,7 @@ impl Clusters {
         let size = tiles.size().map(|n| n as usize);
         let (columns, rows) = (tiles.columns().to_vec(), tiles.rows().to_vec());
         let slices: Vec<_> = slices.iter().map(|z| [z.near(), z.far()]).collect();
-        let mut clusters = Vec::new();
+        let mut all = Vec::new();
         for [near, far] in &slices {
             for [low, high] in &rows {
                 for [left, right] in &columns {
@@ -73,7 +73,7 @@ impl Clusters {
                         (high * near).max(high * far),
                         *far,
                     );
-                    clusters.push(Cluster {
+                    all.push(Cluster {
                         min,
                         max,
                         center: 0.5 * (min + max),
@@ -82,13 +82,13 @@ impl Clusters {
                 }
             }
         }
-        let lists = clusters.iter().map(|_| Vec::new()).collect();
+        let lists = all.iter().map(|_| Vec::new()).collect();
         Self {
             size,
             columns,
             rows,
             slices,
-            clusters,
+            all,
             lists,
         }
     }
@@ -121,7 +121,7 @@ impl Clusters {
                 for y in rows.clone() {
                     for x in columns.clone() {
                         let place = (z * self.size[1] + y) * self.size[0] + x;
-                        let cluster = &self.clusters[place];
+                        let cluster = &self.all[place];
                         let nearest = center.clamp(cluster.min, cluster.max);
                         if nearest.distance_squared(center) > range * range {
                             continue;
@@ -253,14 +253,17 @@ fn lost(
     camera: &Camera,
 ) -> usize {
     let mut lost = 0;
-    for (cluster, list) in clusters.clusters.iter().zip(&clusters.lists) {
+    for (cluster, list) in clusters.all.iter().zip(&clusters.lists) {
         let point = camera.to_world_space(cluster.center);
         for (index, (lamp, xi)) in (0..).zip(lamps) {
             let (direction, squared) = lamp.direction_to(point);
             // Most are too far, or dark.
             let is_lit = lamp.lobe().value(direction) > 0.0
                 && roulette.accepts(lamp.radiant_intensity(direction), squared, *xi);
-            lost += usize::from(is_lit && !list.contains(&index));
+            if is_lit && !list.contains(&index) {
+                assert!(lamp.lobe().outer_angle() > std::f32::consts::FRAC_PI_2);
+                lost += 1;
+            }
         }
     }
     lost

@@ -67,7 +67,7 @@ use crate::lobe::SpotLobe;
 use crate::num::{Single, Vector3};
 
 /// √(1/4π), rounded up.
-const REACH: f32 = 0.282_094_82;
+const REACH: f32 = 0.282_094_8;
 /// The least 1 − cosγ_o, 2⁻²¹. The bound of a narrower lobe is that of a cone of 0.056°, since the rounding of
 /// the axis would count more than what is saved.
 const LEAST_OUTER: f32 = 4.768_371_6e-7;
