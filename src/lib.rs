@@ -108,7 +108,7 @@
 //! rectangle and depth interval define it, with ‖p − q‖ ≤ l_max(ω_o) in exact arithmetic on the `f32`
 //! numbers of the light at q. Then [`touches`](TileTest::touches) and
 //! [`touches_exactly`](TileTest::touches_exactly) are true** of these bounds of the light, projected with
-//! that camera: those that [`Paper`], [`Triaxial`] and [`Tight`] give, both spheres of a [`Spheroid`], and
+//! that camera: those that [`Paper`], [`Triaxial`], [`Tight`] and [`Focal`] give, both spheres of a [`Spheroid`], and
 //! the [`HalfSpace`] above the light's surface. Here a direction stands for the vector of exactly unit
 //! length along it, and a point of world space for its exact image under the camera's matrix.
 //!
@@ -164,8 +164,14 @@
 //! - Schlick 1994, *An inexpensive BRDF model for physically-based rendering*.
 //! - Segovia et al. 2006, *Non-interleaved deferred shading of interleaved sample patterns*.
 //! - Stewart 2015, *Compute-based tiled culling*.
+//! - Toksvig 2005, *Mipmapping normal maps*.
+//! - Tokuyoshi 2016, *Modified filtered importance sampling for virtual spherical Gaussian lights*, the
+//!   supplemental material; Tokuyoshi et al. 2024, *Hierarchical light sampling with accurate spherical
+//!   Gaussian lighting*.
 //! - Tokuyoshi & Harada 2016, *Stochastic light culling*; 2017, *Stochastic light culling for VPLs on
 //!   GGX microsurfaces*.
+//! - Wang et al. 2009, *All-frequency rendering of dynamic, spatially-varying reflectance*; Xu et al. 2013,
+//!   *Anisotropic spherical Gaussians*.
 //! - Trowbridge & Reitz 1975, *Average irregularity representation of a rough surface for ray
 //!   reflection*; Walter et al. 2007, *Microfacet models for refraction through rough surfaces*.
 
@@ -200,8 +206,8 @@ mod interop;
 
 pub use base::{Direction, Error};
 pub use bound::{
-    BoundStrategy, Bounded, Ellipsoid, HalfSpace, OwnBound, Paper, Proxy, Shape, Sphere, Spheroid,
-    Tight, Triaxial,
+    BoundStrategy, Bounded, Ellipsoid, Focal, HalfSpace, OwnBound, Paper, Proxy, Shape, Sphere,
+    Spheroid, Tight, Triaxial,
 };
 #[cfg(feature = "cull")]
 pub use cull::{
@@ -212,9 +218,9 @@ pub use cull::{
 pub use interop::{GpuEllipsoid, GpuSphere};
 pub use light::{DistanceWindow, FrameSeed, Roulette, Seed, Vpl, Xi, rank_along_curve};
 pub use lobe::{
-    AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Fresnel,
-    FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, Incidence, LambertLobe, Lobe,
-    MaskingShadowing, NoFresnel, PhongLobe, Schlick, Separable, SpotLobe,
+    AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Conductor, ConstantLobe,
+    Dielectric, Fresnel, FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, Incidence, LambertLobe,
+    Lobe, MaskingShadowing, NoFresnel, PhongLobe, Schlick, Separable, SphericalGaussian, SpotLobe,
 };
 pub use project::{
     Project, Projected, ProjectedBound, ProjectedEllipsoid, ProjectedHalfSpace, ProjectedSphere,

@@ -1,9 +1,10 @@
 //! Constructors refuse what they cannot use, and say what it was.
 
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, DepthInterval, Dielectric,
-    Direction, DistanceWindow, Ellipsoid, Error, Ggx, Incidence, Interleave, LambertLobe,
-    NoFresnel, PhongLobe, Roulette, Schlick, Sphere, SpotLobe, TileGrid, TileRectangle, Vpl, Xi,
+    AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Camera, Conductor,
+    ConstantLobe, DepthInterval, Dielectric, Direction, DistanceWindow, Ellipsoid, Error, Ggx,
+    Incidence, Interleave, LambertLobe, NoFresnel, PhongLobe, Roulette, Schlick, Sphere,
+    SphericalGaussian, SpotLobe, TileGrid, TileRectangle, Vpl, Xi,
     glam::{Mat3, Mat4, Vec2, Vec3, Vec4},
 };
 
@@ -71,6 +72,28 @@ fn numbers_out_of_range() {
     refuses(&[-1.0, -1e-45, 3e37], |intensity| {
         Vpl::point(one, intensity)
     });
+    refuses(&[-1e-45, -1.0, 4_194_305.0, 1e10], |sharpness| {
+        SphericalGaussian::new(Direction::Z, sharpness, 1.0)
+    });
+    refuses(&[-1e-45, -1.0], |amplitude| {
+        SphericalGaussian::new(Direction::Z, 1.0, amplitude)
+    });
+    refuses(&[-1.0, 3e38], |integral| {
+        SphericalGaussian::with_integral(Direction::Z, 4e6, integral)
+    });
+    let head_on = Incidence::head_on(Direction::Z);
+    refuses(&[-0.1, 1.1], |share| {
+        SphericalGaussian::diffuse(share, Direction::Z)
+    });
+    refuses(&[-0.1, 1.1], |share| {
+        SphericalGaussian::specular(Ggx::new(0.5).unwrap(), share, head_on)
+    });
+    let flat = |bandwidths, amplitude| {
+        AnisotropicSphericalGaussian::new(Direction::Z, Direction::X, bandwidths, amplitude)
+    };
+    refuses(&[-1.0, 1e12], |bandwidth| flat([bandwidth, 1.0], 1.0));
+    refuses(&[-1.0, 1e12], |bandwidth| flat([1.0, bandwidth], 1.0));
+    refuses(&[-1.0], |amplitude| flat([1.0, 1.0], amplitude));
     refuses(&[0.0, -0.001], Roulette::new);
     refuses(&[0.0, -0.5, 1.000_001], Xi::new);
     refuses(&[-1.0, -1e-45], |flux| Vpl::new(one, flux, ConstantLobe));
@@ -91,6 +114,9 @@ fn edges_of_the_ranges_are_accepted() {
     for outer in [0.0, 1e-45, std::f32::consts::PI] {
         assert!(SpotLobe::new(0.0, outer, Direction::Z).is_ok());
         assert!(SpotLobe::new(outer, outer, Direction::Z).is_ok());
+    }
+    for sharpness in [0.0, 1e-45, SphericalGaussian::MAX_SHARPNESS] {
+        assert!(SphericalGaussian::new(Direction::Z, sharpness, f32::MAX).is_ok());
     }
     assert!(Roulette::new(1e-45).is_ok() && Roulette::new(f32::MAX).is_ok());
     assert!(Xi::new(1.0).is_ok() && Xi::new(1e-45).is_ok());

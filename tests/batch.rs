@@ -4,10 +4,10 @@
 use proptest::prelude::*;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BoundStrategy, Bounded, BoxTest, Camera,
-    Conductor, ConstantLobe, Dielectric, Direction, Ellipsoid, Fresnel, Ggx, GgxLobe, Incidence,
-    LambertLobe, LightBatch, Lobe, MaskingShadowing, NoFresnel, OwnBound, Paper, PhongLobe,
-    Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Seed, Sphere, Spheroid,
-    SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    Conductor, ConstantLobe, Dielectric, Direction, Ellipsoid, Focal, Fresnel, Ggx, GgxLobe,
+    Incidence, LambertLobe, LightBatch, Lobe, MaskingShadowing, NoFresnel, OwnBound, Paper,
+    PhongLobe, Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Seed, Sphere,
+    SphericalGaussian, Spheroid, SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 use support::generators::{self, Lit, cases, log_uniform};
 
@@ -308,6 +308,12 @@ proptest! {
             let exponent = PhongLobe::MAX_EXPONENT * light.roughness.powi(4);
             PhongLobe::new(light.share, exponent, light.incidence()).unwrap()
         })?;
+        let gaussian = |light: &Parts| {
+            let sharpness = SphericalGaussian::MAX_SHARPNESS * light.roughness.powi(4);
+            SphericalGaussian::new(light.lit.normal, sharpness, light.share).unwrap()
+        };
+        frame.same_lights(Tight, gaussian)?;
+        frame.same_lights(Focal, gaussian)?;
         frame.same_lights(OwnBound, |light| Windowed(light.lit.normal))?;
     }
 

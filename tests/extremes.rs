@@ -33,8 +33,12 @@ fn no_light_is_lost() {
                     .unwrap()
                     .project(&tile.camera);
                 let is_lit = lit_side.touches(&tile.rectangle, &tile.depths);
-                // A lamp has no surface.
-                if !is_lit && !matches!(light.brdf, Brdf::Constant | Brdf::Spot { .. }) {
+                // Neither a lamp nor an SG has a surface.
+                let has_surface = !matches!(
+                    light.brdf,
+                    Brdf::Constant | Brdf::Spot { .. } | Brdf::SphericalGaussian { .. }
+                );
+                if !is_lit && has_surface {
                     lost.push("half-space");
                 }
                 assert!(

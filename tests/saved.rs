@@ -9,7 +9,8 @@ use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, CullCounters,
     DepthInterval, Dielectric, Direction, DistanceWindow, Error, FresnelMajorant, Ggx, GgxLobe,
     HeightCorrelated, Incidence, Interleave, LambertLobe, NoFresnel, PhongLobe, PixelRectangle,
-    Proxy, Roulette, Schlick, Seed, Separable, SpotLobe, TileGrid, TileRectangle, Vpl, Xi,
+    Proxy, Roulette, Schlick, Seed, Separable, SphericalGaussian, SpotLobe, TileGrid,
+    TileRectangle, Vpl, Xi,
     glam::{Vec2, Vec3},
 };
 use support::generators::{self, cases, log_uniform, up_to_one};
@@ -133,6 +134,8 @@ fn lobes_and_lights_are_saved_with_what_they_are_made_of() -> Result<(), Error> 
     assert_saved(&DistanceWindow::new(20.0)?, json!({ "radius": 20.0 }));
     let spot = json!({ "albedo": 0.5, "exponent": 40.0, "normal": up, "incoming": null });
     assert_saved(&PhongLobe::about(0.5, 40.0, normal)?, spot);
+    let gaussian = json!({ "axis": up, "sharpness": 40.0, "amplitude": 0.5 });
+    assert_saved(&SphericalGaussian::new(normal, 40.0, 0.5)?, gaussian);
     Ok(())
 }
 
@@ -155,6 +158,8 @@ fn lights_and_cameras_that_no_constructor_accepts_are_not_read() -> Result<(), E
     assert_refused::<PhongLobe>(blunt, "Phong exponent is -1");
     let inside_out = json!({ "inner_angle": 2.0, "outer_angle": 0.25, "axis": up });
     assert_refused::<SpotLobe>(inside_out, "inner cone angle is 2");
+    let hollow = json!({ "axis": up, "sharpness": 40.0, "amplitude": -0.5 });
+    assert_refused::<SphericalGaussian>(hollow, "SG amplitude is -0.5");
     let reversed = json!({ "min": [0.0, 0.0], "max": [1.0, -1.0] });
     assert_refused::<TileRectangle>(reversed, "corner of a tile is [1, -1, 1]");
 
@@ -297,6 +302,7 @@ proptest! {
         comes_back(&Vpl::new(position, flux as f32, phong).unwrap())?;
         comes_back(&PhongLobe::about(f0, exponent, normal).unwrap())?;
         comes_back(&SpotLobe::new(f0 * along, along, normal).unwrap())?;
+        comes_back(&SphericalGaussian::new(normal, exponent, f0).unwrap())?;
         let tangent = Direction::new(tangent.to_f32()).unwrap();
         if let Ok(lobe) = AnisotropicGgxLobe::new(grain, NoFresnel, Incidence { normal, incoming }, tangent) {
             comes_back(&lobe)?;

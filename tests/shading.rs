@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Direction, Estimate,
     Fresnel, Ggx, GgxLobe, Incidence, LambertLobe, Lobe, MaskingShadowing, NoFresnel, PhongLobe,
-    PointBlock, RadianceEstimator, Roulette, Schlick, ShadedPoint, ShadingBatch, SpotLobe, Vpl, Xi,
-    glam::Vec3,
+    PointBlock, RadianceEstimator, Roulette, Schlick, ShadedPoint, ShadingBatch, SphericalGaussian,
+    SpotLobe, Vpl, Xi, glam::Vec3,
 };
 use support::{
     generators::{self, Lit, cases, log_uniform, unit_vector},
@@ -404,6 +404,10 @@ proptest! {
         })?;
         frame.same(|light| {
             PhongLobe::about(light.share, exponent(light), light.lit.normal).unwrap()
+        })?;
+        frame.same(|light| {
+            let sharpness = SphericalGaussian::MAX_SHARPNESS * light.roughness.powi(4);
+            SphericalGaussian::new(light.lit.normal, sharpness, light.share).unwrap()
         })?;
         frame.same(|light| Windowed(light.lit.normal))?;
     }

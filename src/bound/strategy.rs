@@ -5,7 +5,7 @@ use crate::num::Single;
 
 /// A way to bound lobes of type `L`.
 ///
-/// [`Tight`], [`Triaxial`] and [`Paper`] are strategies for some of the lobes of this crate, [`OwnBound`] is
+/// [`Tight`], [`Triaxial`], [`Focal`] and [`Paper`] are strategies for some of the lobes of this crate, [`OwnBound`] is
 /// one for every lobe.
 ///
 /// ```
@@ -152,10 +152,16 @@ pub struct Paper;
 pub struct Triaxial;
 
 /// The strategy of the smallest ellipsoid, or nearly: from a table for a [`GgxLobe`](crate::GgxLobe), in
-/// closed form for a [`PhongLobe`](crate::PhongLobe), a [`SpotLobe`](crate::SpotLobe) and a
-/// [`LambertLobe`](crate::LambertLobe).
+/// closed form for a [`PhongLobe`](crate::PhongLobe), a [`SpotLobe`](crate::SpotLobe), a
+/// [`LambertLobe`](crate::LambertLobe) and a [`SphericalGaussian`](crate::SphericalGaussian).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tight;
+
+/// The strategy of a spheroid with one focus at the light, in closed form, for a
+/// [`SphericalGaussian`](crate::SphericalGaussian). It encloses by a short proof, and costs fewer operations
+/// than [`Tight`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Focal;
 
 /// The strategy that returns the lobe's own [`Bounded::unit_bound`]. A batch computes it light by light, and
 /// places and projects it in lanes.

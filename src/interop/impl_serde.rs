@@ -9,7 +9,7 @@ use crate::base::{Direction, Error};
 use crate::light::{DistanceWindow, Roulette, Vpl, Xi};
 use crate::lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, Dielectric, Fresnel, Ggx, GgxLobe, Incidence,
-    LambertLobe, Lobe, PhongLobe, Schlick, SpotLobe,
+    LambertLobe, Lobe, PhongLobe, Schlick, SphericalGaussian, SpotLobe,
 };
 use crate::view::{Camera, CameraParts, DepthInterval, Interleave, TileGrid, TileRectangle};
 
@@ -79,6 +79,11 @@ saved! {
     |window| DistanceWindow { radius: f32 = window.radius() } => DistanceWindow::new(radius);
     |roulette| Roulette { delta: f32 = roulette.delta() } => Roulette::new(delta);
     |schlick| Schlick { f0: f32 = schlick.f0() } => Schlick::new(f0);
+    |lobe| SphericalGaussian {
+        axis: Direction = lobe.axis(),
+        sharpness: f32 = lobe.sharpness(),
+        amplitude: f32 = lobe.amplitude()
+    } => SphericalGaussian::new(axis, sharpness, amplitude);
     |grid| TileGrid { image_size: [u32; 2] = grid.image_size(), tile_size: u32 = grid.tile_size() } =>
         TileGrid::new(image_size, tile_size);
     |tile| TileRectangle { min: [f32; 2] = tile.min().into(), max: [f32; 2] = tile.max().into() } =>

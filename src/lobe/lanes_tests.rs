@@ -8,10 +8,11 @@ use glam::Vec3;
 use super::anisotropic_ggx_lobe::anisotropic_value;
 use super::lambert::lambert;
 use super::phong::PhongLobes;
+use super::spherical_gaussian::SphericalGaussians;
 use super::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, Dielectric, Fresnel, Ggx, GgxLobe, GgxLobes,
     HeightCorrelated, Incidence, LambertLobe, Lobe, MaskingShadowing, NoFresnel, PhongLobe,
-    Schlick, Separable,
+    Schlick, Separable, SphericalGaussian,
 };
 use crate::base::Direction;
 use crate::num::{
@@ -250,6 +251,34 @@ fn phong_lobes_have_the_same_values() {
     check(OfPhong, |random| {
         let exponent = 100.0 * random.number();
         PhongLobe::new(random.number(), exponent, random.incidence()).expect("in range")
+    });
+}
+
+#[derive(Clone, Copy)]
+struct OfGaussian;
+
+impl InLanes<SphericalGaussian> for OfGaussian {
+    fn values<S: Simd>(
+        &self,
+        simd: S,
+        lobes: &[SphericalGaussian; MAX_LANES],
+        start: usize,
+        outgoing: Vector3<F32Lanes<S>>,
+    ) -> F32Lanes<S> {
+        let lanes = SphericalGaussians {
+            axis: gathered_vector(simd, start, |i| *lobes[i].axis()),
+            sharpness: gathered(simd, start, |i| lobes[i].sharpness()),
+            amplitude: gathered(simd, start, |i| lobes[i].amplitude()),
+        };
+        lanes.value(outgoing)
+    }
+}
+
+#[test]
+fn spherical_gaussians_have_the_same_values() {
+    check(OfGaussian, |random| {
+        let sharpness = 60.0 * random.number();
+        SphericalGaussian::new(random.direction(), sharpness, random.number()).expect("in range")
     });
 }
 

@@ -1,5 +1,6 @@
 //! Lobes: what a surface reflects or a lamp emits. Microfacet terms, Fresnel factors, and the lobes that they make.
 
+mod anisotropic_gaussian;
 mod anisotropic_ggx;
 mod anisotropic_ggx_lobe;
 mod conductor;
@@ -14,8 +15,10 @@ mod lambert;
 mod lanes_tests;
 mod masking;
 mod phong;
+mod spherical_gaussian;
 mod spot;
 
+pub use anisotropic_gaussian::AnisotropicSphericalGaussian;
 pub use anisotropic_ggx::AnisotropicGgx;
 pub use anisotropic_ggx_lobe::AnisotropicGgxLobe;
 pub(crate) use anisotropic_ggx_lobe::{SurfaceAxes, unit};
@@ -30,6 +33,7 @@ pub use incidence::Incidence;
 pub use lambert::LambertLobe;
 pub use masking::{HeightCorrelated, MaskingShadowing, Separable};
 pub use phong::PhongLobe;
+pub use spherical_gaussian::SphericalGaussian;
 pub use spot::SpotLobe;
 
 use glam::Vec3;

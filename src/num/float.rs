@@ -46,3 +46,23 @@ pub(crate) fn power(x: f32, y: f32) -> f32 {
     let power = libm::powf(x, y);
     power
 }
+
+/// sin x and cos x, with the accuracy of the backend.
+pub(crate) fn sin_cos(x: f32) -> (f32, f32) {
+    #[cfg(feature = "std")]
+    #[expect(clippy::disallowed_methods, reason = "this is the backend")]
+    let both = x.sin_cos();
+    #[cfg(all(feature = "libm", not(feature = "std")))]
+    let both = libm::sincosf(x);
+    both
+}
+
+/// ln(1 + x) for x > −1, with the accuracy of the backend.
+pub(crate) fn ln_1p_f64(x: f64) -> f64 {
+    #[cfg(feature = "std")]
+    #[expect(clippy::disallowed_methods, reason = "this is the backend")]
+    let logarithm = x.ln_1p();
+    #[cfg(all(feature = "libm", not(feature = "std")))]
+    let logarithm = libm::log1p(x);
+    logarithm
+}

@@ -15,6 +15,7 @@
 //! Outside of generic code, `max` and `min` of an `f32` or an `f64` are the inherent functions of the
 //! standard library, which return the operand that is not NaN.
 
+mod exponential;
 mod float;
 #[cfg(feature = "cull")]
 mod lanes;
@@ -28,7 +29,8 @@ mod vector;
 #[cfg(all(test, feature = "cull"))]
 pub(crate) use lanes_tests::{LaneTest, at_every_level, to_array};
 
-pub(crate) use float::{power, sqrt, sqrt_f64, tan};
+pub(crate) use exponential::{exponential, one_minus_exponential};
+pub(crate) use float::{ln_1p_f64, power, sin_cos, sqrt, sqrt_f64, tan};
 #[cfg(feature = "cull")]
 pub(crate) use lanes::{F32Lanes, MAX_LANES, load_quads};
 pub(crate) use real::{Double, Quad, Real, Single};

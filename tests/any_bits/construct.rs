@@ -4,10 +4,11 @@ use std::hint::black_box;
 
 use fastrand::Rng;
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, Bounded, Camera, Conductor, ConstantLobe, DepthInterval,
-    Dielectric, Direction, DistanceWindow, Ellipsoid, Fresnel, FresnelMajorant, Ggx, GgxLobe,
-    Incidence, Interleave, LambertLobe, Lobe, NoFresnel, Paper, PhongLobe, PixelRectangle, Proxy,
-    Roulette, Schlick, Seed, Sphere, SpotLobe, Tight, TileGrid, TileRectangle, Triaxial, Vpl, Xi,
+    AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Bounded, Camera, Conductor,
+    ConstantLobe, DepthInterval, Dielectric, Direction, DistanceWindow, Ellipsoid, Fresnel,
+    FresnelMajorant, Ggx, GgxLobe, Incidence, Interleave, LambertLobe, Lobe, NoFresnel, Paper,
+    PhongLobe, PixelRectangle, Proxy, Roulette, Schlick, Seed, Sphere, SphericalGaussian, SpotLobe,
+    Tight, TileGrid, TileRectangle, Triaxial, Vpl, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
 use support::adversary::{Light, Tile};
@@ -161,6 +162,7 @@ fn others(bits: &mut Bits, cameras: &[Camera]) {
         }
         let _ = (Vpl::point(bits.vector(), bits.number()), bits.number());
     }
+    gaussians(bits, cameras);
     if let (Ok(roulette), Ok(xi)) = (Roulette::new(bits.number()), Xi::new(bits.number())) {
         probe::roulette(&roulette, xi);
         let seed = Seed(bits.word()).subregion(bits.word());
@@ -189,6 +191,48 @@ fn others(bits: &mut Bits, cameras: &[Camera]) {
         assert!(0.0 <= interval.near() && interval.near() <= interval.far());
     }
     black_box(DepthInterval::half_z(depths));
+}
+
+fn gaussians(bits: &mut Bits, cameras: &[Camera]) {
+    let Some([axis, other]) = directions(bits) else {
+        return;
+    };
+    let [sharpness, amplitude] = [(); 2].map(|()| bits.number());
+    let mean = [(); 3].map(|()| bits.number().into());
+    let incidence = Incidence {
+        normal: axis,
+        incoming: other,
+    };
+    let ggx = AnisotropicGgx::new(bits.number(), bits.number());
+    let anisotropic = [
+        AnisotropicSphericalGaussian::new(axis, other, [bits.number(), bits.number()], amplitude),
+        ggx.and_then(|ggx| AnisotropicSphericalGaussian::specular(ggx, incidence, other)),
+    ];
+    let lobes = [
+        SphericalGaussian::new(axis, sharpness, amplitude),
+        SphericalGaussian::with_integral(other, bits.number(), amplitude),
+        SphericalGaussian::from_mean_direction(mean, amplitude),
+        SphericalGaussian::diffuse(amplitude, axis),
+        Ggx::new(bits.number())
+            .and_then(|ggx| SphericalGaussian::specular(ggx, amplitude, incidence)),
+    ];
+    for lobe in lobes.into_iter().flatten() {
+        probe::direction(lobe.sample([bits.number(), bits.number()]));
+        assert!(!lobe.density(bits.vector()).is_nan());
+        for other in lobes.into_iter().flatten() {
+            let product = lobe.product(&other);
+            assert!(product.sharpness() <= SphericalGaussian::MAX_SHARPNESS);
+            assert!(product.amplitude().is_finite() && product.integral() >= 0.0);
+            probe::direction(product.axis());
+        }
+        for other in anisotropic.into_iter().flatten() {
+            assert!(other.product_integral(&lobe) >= 0.0);
+            assert!(other.value(bits.vector()) >= 0.0);
+            assert!(other.scaled(bits.number()).amplitude() >= 0.0);
+        }
+        probe::saved(&lobe);
+        probe::light(lobe, cameras);
+    }
 }
 
 /// A Fresnel factor that keeps no promise, and places that are none: what they come to
@@ -324,6 +368,16 @@ pub fn light_in_domain(bits: &mut Bits) {
                 return;
             }
             Brdf::Phong { albedo, exponent }
+        }
+        6 => {
+            let [amplitude, sharpness] = [albedo, bits.number()];
+            if SphericalGaussian::new(Direction::Z, sharpness, amplitude).is_err() {
+                return;
+            }
+            Brdf::SphericalGaussian {
+                amplitude,
+                sharpness,
+            }
         }
         _ if Ggx::new(roughness).is_ok() => Brdf::Ggx {
             roughness,

@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 use proptest::prelude::*;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Conductor, ConstantLobe, Dielectric, Direction,
-    Ellipsoid, Ggx, GgxLobe, Incidence, LambertLobe, MaskingShadowing, NoFresnel, Paper, PhongLobe,
-    Roulette, Schlick, Spheroid, SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    Ellipsoid, Focal, Ggx, GgxLobe, Incidence, LambertLobe, MaskingShadowing, NoFresnel, Paper,
+    PhongLobe, Roulette, Schlick, SphericalGaussian, Spheroid, SpotLobe, Tight, Triaxial, Vpl, Xi,
+    glam::Vec3,
 };
 use support::generators::{self, Lit};
 use support::reference::{Brdf, Fresnel, GivenFresnel, MaskedAlone, Masking, Shape, Vector};
@@ -186,6 +187,26 @@ impl Case {
                     ("ellipsoid of its outer cone", hard),
                 ]
             }
+            Brdf::SphericalGaussian {
+                amplitude,
+                sharpness,
+            } => {
+                let lobe = SphericalGaussian::new(self.lit.normal, sharpness, amplitude).unwrap();
+                let (flux, delta, xi) = self.roulette;
+                let light = Vpl::new(self.position, flux, lobe).unwrap();
+                let focal =
+                    light.bound_by(Focal, &Roulette::new(delta).unwrap(), Xi::new(xi).unwrap());
+                vec![
+                    ("ellipsoid of an SG", self.bound(lobe).into()),
+                    ("spheroid of an SG", focal.into()),
+                    (
+                        "ellipsoid of the spheroid of an SG",
+                        Ellipsoid::from(focal).into(),
+                    ),
+                    ("sphere at an SG", focal.sphere_at_focus().into()),
+                    ("sphere around an SG", focal.enclosing_sphere().into()),
+                ]
+            }
             Brdf::Constant => vec![("sphere of a point light", self.bound(ConstantLobe).into())],
         }
     }
@@ -193,7 +214,10 @@ impl Case {
     /// Directions in which a bound is most likely to fail.
     pub fn directions(&self, random: &[Vector]) -> Vec<Vector> {
         let surface = self.lit.surface;
-        let mirror = surface.mirror().unit();
+        let mirror = match self.brdf {
+            Brdf::SphericalGaussian { .. } => surface.normal,
+            _ => surface.mirror().unit(),
+        };
         let across = match surface.normal.cross(surface.incoming) {
             cross if cross.length() > 1e-12 => cross.unit(),
             _ => mirror.orthogonal(),
@@ -203,6 +227,9 @@ impl Case {
             Brdf::Ggx { roughness, .. } => f64::from(roughness),
             Brdf::Anisotropic { roughness, .. } => f64::from(roughness[0].min(roughness[1])),
             Brdf::Phong { exponent, .. } => (1.0 / (2.0 + 2.0 * f64::from(exponent))).sqrt(),
+            Brdf::SphericalGaussian { sharpness, .. } => {
+                (1.0 / (2.0 + 2.0 * f64::from(sharpness))).sqrt()
+            }
             _ => 1.0,
         };
         let mut directions = vec![mirror, surface.normal, surface.incoming, -surface.incoming];

@@ -205,14 +205,31 @@ pub fn cone_angles() -> impl Strategy<Value = [f32; 2]> {
     })
 }
 
+/// The sharpness of an SG: over decades, and both ends.
+pub fn sharpness() -> impl Strategy<Value = f32> {
+    let sharpness = prop_oneof![
+        4 => log_uniform(1e-3, 4_194_304.0),
+        2 => 0.0..20.0,
+        1 => log_uniform(1e-40, 1e-3),
+        1 => Just(0.0),
+        1 => Just(4_194_304.0),
+    ];
+    sharpness.prop_map(|x: f64| x as f32)
+}
+
 pub fn brdf() -> impl Strategy<Value = Brdf> {
     let albedo = || prop_oneof![3 => 0.001..=1.0_f32, 1 => Just(1.0_f32)];
     let phong = (albedo(), exponent());
+    let gaussian = (log_uniform(1e-6, 1e6), sharpness());
     prop_oneof![
         4 => ggx_brdf(),
         4 => anisotropic_brdf(),
         2 => albedo().prop_map(|albedo| Brdf::Lambert { albedo }),
         4 => phong.prop_map(|(albedo, exponent)| Brdf::Phong { albedo, exponent }),
+        4 => gaussian.prop_map(|(amplitude, sharpness)| Brdf::SphericalGaussian {
+            amplitude: amplitude as f32,
+            sharpness,
+        }),
         1 => Just(Brdf::Constant),
         4 => cone_angles().prop_map(Brdf::spot),
     ]

@@ -6,8 +6,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use fastrand::Rng;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Conductor, ConstantLobe, Dielectric, Direction,
-    Ggx, GgxLobe, Incidence, LambertLobe, MaskingShadowing, NoFresnel, Paper, PhongLobe, Roulette,
-    Schlick, SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    Focal, Ggx, GgxLobe, Incidence, LambertLobe, MaskingShadowing, NoFresnel, Paper, PhongLobe,
+    Roulette, Schlick, SphericalGaussian, SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 use twofloat::TwoFloat as Real;
 
@@ -39,6 +39,10 @@ impl Light {
                 albedo: up_to_one(rng, 1e-6) as f32,
             },
             1 => Brdf::Constant,
+            9 | 10 => Brdf::SphericalGaussian {
+                amplitude: log_uniform(rng, 1e-6, 1e6) as f32,
+                sharpness: sharpness(rng),
+            },
             2 | 3 => Brdf::Phong {
                 albedo: up_to_one(rng, 1e-6) as f32,
                 exponent: exponent(rng),
@@ -97,7 +101,10 @@ impl Light {
     pub fn peak(&self) -> Exact {
         let (n, w) = (self.unit_normal(), self.unit_incoming());
         match self.brdf {
-            Brdf::Lambert { .. } | Brdf::Constant | Brdf::Spot { .. } => n,
+            Brdf::Lambert { .. }
+            | Brdf::Constant
+            | Brdf::Spot { .. }
+            | Brdf::SphericalGaussian { .. } => n,
             _ => n * (n.dot(w) * 2.0) - w,
         }
     }
@@ -137,6 +144,9 @@ impl Light {
             Brdf::Ggx { roughness, .. } => f64::from(roughness),
             Brdf::Anisotropic { roughness, .. } => f64::from(roughness[rng.usize(0..2)]),
             Brdf::Phong { exponent, .. } => (1.0 / (2.0 + 2.0 * f64::from(exponent))).sqrt(),
+            Brdf::SphericalGaussian { sharpness, .. } => {
+                (1.0 / (2.0 + 2.0 * f64::from(sharpness))).sqrt()
+            }
             _ => 1.0,
         };
         let peak = self.peak();
@@ -220,6 +230,19 @@ impl Light {
                 Bound::Lambert {
                     sphere: light.bound(&roulette, xi),
                     tight: light.bound_by(Tight, &roulette, xi),
+                }
+            }
+            Brdf::SphericalGaussian {
+                amplitude,
+                sharpness,
+            } => {
+                let lobe = SphericalGaussian::new(self.normal, sharpness, amplitude)
+                    .expect("in the domain");
+                let light = Vpl::new(self.position, self.flux, lobe).expect("in the domain");
+                let (roulette, xi) = self.roulette();
+                Bound::SphericalGaussian {
+                    focal: light.bound_by(Focal, &roulette, xi),
+                    tight: light.bound(&roulette, xi),
                 }
             }
             Brdf::Phong { albedo, exponent } => {
@@ -389,6 +412,17 @@ pub fn fresnel(rng: &mut Rng) -> Fresnel {
         3 => Fresnel::Schlick(0.0),
         _ => Fresnel::None,
     }
+}
+
+/// Any sharpness of an SG.
+fn sharpness(rng: &mut Rng) -> f32 {
+    let sharpness = match rng.u8(0..8) {
+        0 => 0.0,
+        1 => 4_194_304.0,
+        2 | 3 => 20.0 * rng.f64(),
+        _ => log_uniform(rng, 1e-6, 4_194_304.0),
+    };
+    sharpness as f32
 }
 
 /// Any exponent of Phong's that is a multiple of 1/16, as the exact model needs it.

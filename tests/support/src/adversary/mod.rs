@@ -22,6 +22,10 @@ pub enum Bound {
     },
     Anisotropic(Ellipsoid),
     Phong(Ellipsoid),
+    SphericalGaussian {
+        focal: Spheroid,
+        tight: Ellipsoid,
+    },
     Lambert {
         sphere: Sphere,
         tight: Ellipsoid,
@@ -59,6 +63,12 @@ impl Bound {
             Self::Anisotropic(bound) => vec![("anisotropic ellipsoid", ellipsoid(bound))],
             Self::Spot(bound) => vec![("ellipsoid of a spot light", ellipsoid(bound))],
             Self::Phong(bound) => vec![("ellipsoid of Phong's lobe", ellipsoid(bound))],
+            Self::SphericalGaussian { focal, tight } => vec![
+                ("focal spheroid", ellipsoid(focal.into())),
+                ("ellipsoid of an SG", ellipsoid(tight)),
+                ("sphere around an SG", sphere(focal.enclosing_sphere())),
+                ("sphere at an SG", sphere(focal.sphere_at_focus())),
+            ],
             Self::Lambert {
                 sphere: bound,
                 tight,

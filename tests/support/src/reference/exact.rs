@@ -83,6 +83,16 @@ pub fn value(brdf: Brdf, normal: Exact, incoming: Exact, outgoing: Exact) -> Rea
             let transition = (outer - versine) / (outer - inner);
             peak * transition * transition
         }
+        Brdf::SphericalGaussian {
+            amplitude,
+            sharpness,
+        } => {
+            let apart = outgoing - normal;
+            let exponent = apart.dot(apart) * (0.5 * f64::from(sharpness));
+            // e⁻ˣ = e⁻ʰⁱ e⁻ˡᵒ, to the 16 digits of the first.
+            let rest = Real::from(1.0) - exponent.lo();
+            rest * ((-exponent.hi()).exp() * f64::from(amplitude))
+        }
         _ if mu_o <= zero => zero,
         Brdf::Lambert { albedo } => mu_o * f64::from(albedo) / PI,
         _ if mu <= zero => zero,

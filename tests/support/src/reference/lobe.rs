@@ -35,6 +35,11 @@ pub enum Brdf {
         albedo: f32,
         exponent: f32,
     },
+    /// No BRDF either, but a lobe about the normal that no horizon cuts.
+    SphericalGaussian {
+        amplitude: f32,
+        sharpness: f32,
+    },
     /// No BRDF, but the intensity of a point light: 1/(4π) everywhere.
     Constant,
     /// No BRDF either, but a spot light along the normal: its inner and outer angle, and 1 − cos of both as
@@ -126,6 +131,14 @@ impl Surface {
                 } else {
                     0.0
                 }
+            }
+            Brdf::SphericalGaussian {
+                amplitude,
+                sharpness,
+            } => {
+                let apart = outgoing - self.normal;
+                let exponent = 0.5 * f64::from(sharpness) * apart.dot(apart);
+                f64::from(amplitude) * (-exponent).exp()
             }
             _ if mu_o <= 0.0 => 0.0,
             Brdf::Lambert { albedo } => f64::from(albedo) / PI * mu_o,

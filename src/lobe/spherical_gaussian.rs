@@ -1,0 +1,403 @@
+use core::f64::consts::TAU;
+
+use glam::Vec3;
+
+use super::{Ggx, Incidence, Lobe, LobeNumbers, padded, unit};
+use crate::base::{Direction, Error, number_in};
+use crate::num::{
+    Real, Single, Vector3, exact_dot, exponential, ln_1p_f64, one_minus_exponential, sin_cos,
+    sqrt_f64,
+};
+
+/// A spherical Gaussian (SG): the lobe v(ω) = c exp(λ(ω·ξ − 1)) about the axis ξ
+/// [Tokuyoshi 2016, Sec. 2].
+///
+/// The sharpness λ says how narrow the lobe is, the amplitude c in sr⁻¹ is its largest value. For λ = 0 it has
+/// the value c in every direction, and no surface cuts it: it has no horizon. Products of two SGs are SGs. An
+/// SG of unit integral is the von Mises–Fisher distribution, from which [`sample`](Self::sample) draws.
+///
+/// SGs approximate what a surface reflects ([`diffuse`](Self::diffuse), [`specular`](Self::specular)), and
+/// the light of a cluster of lights ([`Vsgl`](crate::Vsgl)).
+///
+/// ```
+/// use stochastic_light_culling::{Bounded, Direction, Lobe, SphericalGaussian, glam::Vec3};
+///
+/// let lobe = SphericalGaussian::with_integral(Direction::Z, 50.0, 1.0)?;
+/// assert!((lobe.integral() - 1.0).abs() < 1e-6);
+/// assert_eq!(lobe.value(Vec3::Z), lobe.amplitude());
+/// let aside = lobe.value(Vec3::new(0.6, 0.0, 0.8)) / lobe.amplitude();
+/// assert!((aside / (50.0_f32 * (0.8 - 1.0)).exp() - 1.0).abs() < 1e-5);
+///
+/// // The product of two is one again.
+/// let other = SphericalGaussian::new(Direction::X, 2.0, 0.5)?;
+/// let product = lobe.product(&other);
+/// let direction = Vec3::new(0.28, 0.0, 0.96);
+/// let values = lobe.value(direction) * other.value(direction);
+/// assert!((product.value(direction) / values - 1.0).abs() < 1e-5);
+///
+/// // It is bounded, placed and culled as any other lobe.
+/// assert!(lobe.unit_bound().semi_axes().x > 2.0 * lobe.unit_bound().semi_axes().y);
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SphericalGaussian {
+    axis: Direction,
+    sharpness: f32,
+    amplitude: f32,
+}
+
+/// 2π(1 − e^{−2λ})/λ, the integral A(λ) of an SG of unit amplitude, in sr, to 10⁻¹¹ of itself for every λ ≥ 0.
+/// It is 4π for λ = 0.
+#[inline(always)]
+pub(crate) fn solid_angle<D: Real<Element = f64>>(sharpness: D) -> D {
+    // Far below 10⁻¹¹, where A is 4π but for rounding.
+    let sharpness = sharpness.max(sharpness.splat(1e-30));
+    one_minus_exponential(sharpness * 2.0) * TAU / sharpness
+}
+
+impl SphericalGaussian {
+    /// The largest sharpness, 2²². Its lobe is a fortieth of a degree wide, which `f32` directions still
+    /// resolve.
+    pub const MAX_SHARPNESS: f32 = 4_194_304.0;
+
+    /// The sharpness λ_d of the SG that stands for Lambert's lobe [Tokuyoshi 2016, Sec. 2.1].
+    ///
+    /// Least squares over all directions give 2.14 with a free amplitude, and 2.29 with the integral of the
+    /// lobe. Toksvig's rule gives 2 for the lobe's mean direction, which is ⅔ of the normal.
+    pub const DIFFUSE_SHARPNESS: f32 = 2.0;
+
+    /// Creates the SG about `axis` = ξ with `sharpness` = λ and `amplitude` = c in sr⁻¹. It is zero
+    /// everywhere for c = 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `sharpness` is outside \[0, [`MAX_SHARPNESS`](Self::MAX_SHARPNESS)\], `amplitude`
+    /// is negative or infinite, or either is NaN.
+    pub fn new(axis: Direction, sharpness: f32, amplitude: f32) -> Result<Self, Error> {
+        Ok(Self {
+            axis,
+            sharpness: valid_sharpness(sharpness)?,
+            amplitude: number_in("SG amplitude", amplitude, "in [0, ∞)", 0.0..=f32::MAX)?,
+        })
+    }
+
+    /// Creates the SG about `axis` whose integral over all directions is `integral`. For 1 it is the von
+    /// Mises–Fisher distribution.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new); [`Error::Number`] too if `integral` is negative, NaN, or so large that the
+    /// amplitude is infinite.
+    pub fn with_integral(axis: Direction, sharpness: f32, integral: f32) -> Result<Self, Error> {
+        let sharpness = valid_sharpness(sharpness)?;
+        let amplitude = f64::from(integral) / solid_angle(f64::from(sharpness));
+        if !(integral >= 0.0 && amplitude <= f64::from(f32::MAX)) {
+            return Err(Error::Number {
+                quantity: "SG integral",
+                value: integral,
+                valid: "in [0, ∞), with a finite amplitude",
+            });
+        }
+        Ok(Self {
+            axis,
+            sharpness,
+            amplitude: amplitude as f32,
+        })
+    }
+
+    /// Approximates the [`LambertLobe`](crate::LambertLobe) of a surface with `normal` that reflects the share
+    /// `albedo` of the light, by an SG with the same integral [Tokuyoshi 2016, Eq. 1].
+    ///
+    /// Unlike that lobe it does not end at the horizon. Its sharpness is
+    /// [`DIFFUSE_SHARPNESS`](Self::DIFFUSE_SHARPNESS).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `albedo` is outside \[0, 1\] or NaN.
+    pub fn diffuse(albedo: f32, normal: Direction) -> Result<Self, Error> {
+        let albedo = number_in("albedo", albedo, "in [0, 1]", 0.0..=1.0)?;
+        Self::with_integral(normal, Self::DIFFUSE_SHARPNESS, albedo)
+    }
+
+    /// Approximates the [`GgxLobe`](crate::GgxLobe) of a surface that reflects the share `reflectance` = R_s
+    /// of the light, by an SG with that integral [Tokuyoshi 2016, Eq. 2].
+    ///
+    /// The axis is the mirror direction ξ_s, and λ_s = 1/(2α²ξ_s·n): the NDF is an SG with the sharpness 2/α²
+    /// in the half vector [Wang et al. 2009]. A λ_s above [`MAX_SHARPNESS`](Self::MAX_SHARPNESS) is lowered to
+    /// that. For light from below the surface or at grazing incidence the SG is zero everywhere.
+    ///
+    /// The relative error in the square mean is 0.2 to 0.3 for α ≤ 0.4 and light from up to 30° off the normal,
+    /// since the NDF has longer tails than a Gaussian. It is 0.4 to 0.5 at 60° and about 1 at 80°.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `reflectance` is outside \[0, 1\] or NaN.
+    pub fn specular(ggx: Ggx, reflectance: f32, incidence: Incidence) -> Result<Self, Error> {
+        let reflectance = number_in("reflectance", reflectance, "in [0, 1]", 0.0..=1.0)?;
+        let Incidence { normal, incoming } = incidence;
+        let cosine = exact_dot(Vector3::from(normal), incoming.into());
+        let axis = incoming.mirrored(normal);
+        if cosine <= 0.0 {
+            return Self::new(axis, 0.0, 0.0);
+        }
+        let alpha = f64::from(ggx.roughness());
+        let sharpness = 0.5 / (alpha * alpha * cosine);
+        let sharpness = sharpness.min(Self::MAX_SHARPNESS.into()) as f32;
+        Self::with_integral(axis, sharpness, reflectance)
+    }
+
+    /// Creates the SG with the given `integral` whose mean direction is `mean` = ξ̄, by Toksvig's rule: its
+    /// axis is along ξ̄, and λ = ‖ξ̄‖/(1 − ‖ξ̄‖) [Tokuyoshi 2016, Sec. 3.1; Toksvig 2005].
+    ///
+    /// It undoes [`mean_direction`](Self::mean_direction). The weighted mean of the mean directions of several
+    /// lobes makes the SG that stands for all of them. For ξ̄ = 0 the SG is constant, λ = 0, and its axis is
+    /// arbitrary. λ is at most [`MAX_SHARPNESS`](Self::MAX_SHARPNESS), as for ‖ξ̄‖ = 1.
+    ///
+    /// `mean` is in double precision, since in single precision a length near 1 would lose the digits of λ.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Vector`] if a component of `mean` is NaN or its length is above 1 by more than 10⁻⁶;
+    /// [`Error::Number`] as [`with_integral`](Self::with_integral).
+    pub fn from_mean_direction(mean: [f64; 3], integral: f32) -> Result<Self, Error> {
+        let mean = Vector3::from(mean);
+        let length = mean.length();
+        // False for NaN.
+        let is_valid = length <= 1.0 + 1e-6;
+        if !is_valid {
+            return Err(Error::Vector {
+                quantity: "mean direction",
+                value: Vec3::from(Vector3::narrow(mean)),
+                valid: "no longer than 1",
+            });
+        }
+        let (axis, sharpness) = toksvig(mean, 1.0 - length);
+        Self::with_integral(axis, sharpness, integral)
+    }
+
+    /// The axis ξ.
+    #[must_use]
+    pub fn axis(&self) -> Direction {
+        self.axis
+    }
+
+    /// The sharpness λ in \[0, [`MAX_SHARPNESS`](Self::MAX_SHARPNESS)\].
+    #[must_use]
+    pub fn sharpness(&self) -> f32 {
+        self.sharpness
+    }
+
+    /// The amplitude c in sr⁻¹, the value towards the axis.
+    #[must_use]
+    pub fn amplitude(&self) -> f32 {
+        self.amplitude
+    }
+
+    /// The integral c A(λ) over all directions, A(λ) = 2π(1 − e^{−2λ})/λ
+    /// [Tokuyoshi 2016, Sec. 2].
+    ///
+    /// A falls from 4π at λ = 0. An integral above the largest `f32` is that.
+    #[must_use]
+    pub fn integral(&self) -> f32 {
+        let integral = f64::from(self.amplitude) * solid_angle(f64::from(self.sharpness));
+        integral.min(f32::MAX.into()) as f32
+    }
+
+    /// The mean direction ξ̄ = λ/(λ+1) ξ by Toksvig's rule [Tokuyoshi 2016, Sec. 3.1].
+    ///
+    /// The rule is rational and easily undone ([`from_mean_direction`](Self::from_mean_direction)). The exact
+    /// mean is coth λ − 1/λ times ξ: the same for λ → ∞, and a third as long for λ → 0.
+    #[must_use]
+    pub fn mean_direction(&self) -> [f64; 3] {
+        let Vector3 { x, y, z } = self.mean();
+        [x, y, z]
+    }
+
+    #[inline]
+    pub(crate) fn mean(&self) -> Vector3<f64> {
+        let sharpness = f64::from(self.sharpness);
+        unit(Vector3::from(self.axis)) * (sharpness / (sharpness + 1.0))
+    }
+
+    /// The product with `other`, which is an SG too, in the form that does not cancel
+    /// [Tokuyoshi et al. 2024].
+    ///
+    /// With s = λ₁ξ₁ + λ₂ξ₂ its sharpness is λ = ‖s‖, its axis is along s, and its amplitude is
+    /// c₁c₂ exp(−λ₁λ₂‖ξ₁ − ξ₂‖²/(λ + λ₁ + λ₂)). For s = 0 the axis is arbitrary. A λ above
+    /// [`MAX_SHARPNESS`](Self::MAX_SHARPNESS) is lowered to that, with the integral unchanged. An amplitude
+    /// above the largest `f32` is that.
+    #[must_use]
+    pub fn product(&self, other: &Self) -> Self {
+        let [a, b] = [self, other].map(|sg| f64::from(sg.sharpness));
+        let [u, v] = [self, other].map(|sg| unit(Vector3::from(sg.axis)));
+        let sum = u * a + v * b;
+        let sharpness = sum.length();
+        let apart = (u - v).length_squared();
+        // Positive where λ₁ and λ₂ are zero too.
+        let sum_of_three = (sharpness + a + b).max(f64::MIN_POSITIVE);
+        let amplitude = f64::from(self.amplitude)
+            * f64::from(other.amplitude)
+            * exponential(-(a * b * apart / sum_of_three));
+        let most = f64::from(Self::MAX_SHARPNESS);
+        let (clamped, share) = if sharpness > most {
+            (most, solid_angle(sharpness) / solid_angle(most))
+        } else {
+            (sharpness, 1.0)
+        };
+        Self {
+            axis: direction_along(sum, sharpness).unwrap_or(self.axis),
+            sharpness: clamped as f32,
+            amplitude: (amplitude * share).min(f32::MAX.into()) as f32,
+        }
+    }
+
+    /// ∫ v₁v₂ dω of this SG and `other`, the integral of their [`product`](Self::product).
+    #[must_use]
+    pub fn product_integral(&self, other: &Self) -> f32 {
+        self.product(other).integral()
+    }
+
+    /// Draws a direction with the density v(ω)/∫v dω, the von Mises–Fisher distribution, from two independent
+    /// numbers that are evenly distributed in \[0, 1).
+    ///
+    /// 1 − ω·ξ = −ln(1 − x(1 − e^{−2λ}))/λ inverts the distribution of the first number x: without
+    /// cancellation for sharp lobes, and evenly over the sphere for λ = 0. Numbers outside \[0, 1\] are moved to
+    /// its ends, and NaN to 0.
+    #[must_use]
+    pub fn sample(&self, numbers: [f32; 2]) -> Direction {
+        // NaN becomes zero.
+        let [x, turn] = numbers.map(|number| number.max(0.0).min(1.0));
+        let (x, sharpness) = (f64::from(x), f64::from(self.sharpness));
+        let height = if sharpness > 1e-9 {
+            -ln_1p_f64(-x * one_minus_exponential(2.0 * sharpness)) / sharpness
+        } else {
+            2.0 * x
+        };
+        let height = height.min(2.0);
+        let radius = sqrt_f64(height * (2.0 - height));
+        let (v, w) = Vector3::from(self.axis).any_orthonormal_pair();
+        let (sine, cosine) = sin_cos(turn * core::f32::consts::TAU);
+        let drawn = Vector3::combine([
+            (1.0 - height, Vector3::from(self.axis).widen()),
+            (radius * f64::from(cosine), v.widen()),
+            (radius * f64::from(sine), w.widen()),
+        ]);
+        direction_along(drawn, drawn.length()).unwrap_or(self.axis)
+    }
+
+    /// The density v(ω)/∫v dω in sr⁻¹ with which [`sample`](Self::sample) draws the unit vector `direction`,
+    /// whatever the amplitude. Zero for NaN.
+    #[must_use]
+    pub fn density(&self, direction: Vec3) -> f32 {
+        let over = 1.0 / solid_angle(f64::from(self.sharpness));
+        let distribution = Self {
+            amplitude: over as f32,
+            ..*self
+        };
+        distribution.value(direction)
+    }
+
+    /// The SG as a single lane.
+    #[inline(always)]
+    pub(crate) fn lanes(&self) -> SphericalGaussians<f32> {
+        SphericalGaussians {
+            axis: self.axis.into(),
+            sharpness: self.sharpness,
+            amplitude: self.amplitude,
+        }
+    }
+}
+
+fn valid_sharpness(sharpness: f32) -> Result<f32, Error> {
+    number_in(
+        "SG sharpness λ",
+        sharpness,
+        "in [0, 2²²]",
+        0.0..=SphericalGaussian::MAX_SHARPNESS,
+    )
+}
+
+/// The direction along `vector`, which is `length` long. `None` if that is zero.
+pub(crate) fn direction_along(vector: Vector3<f64>, length: f64) -> Option<Direction> {
+    // A square below the normal range would lose the direction.
+    (length > 1e-150).then(|| Direction::from_unit(Vector3::narrow(vector / length).into()))
+}
+
+/// The axis and the sharpness ‖ξ̄‖/(1 − ‖ξ̄‖) of the SG with the mean direction `mean`, where
+/// `rest` = 1 − ‖ξ̄‖. The axis is +z for a mean of zero.
+pub(crate) fn toksvig(mean: Vector3<f64>, rest: f64) -> (Direction, f32) {
+    let length = mean.length();
+    let most = f64::from(SphericalGaussian::MAX_SHARPNESS);
+    let sharpness = if rest * most > length {
+        length / rest
+    } else {
+        most
+    };
+    let axis = direction_along(mean, length).unwrap_or(Direction::Z);
+    (axis, sharpness as f32)
+}
+
+impl Lobe for SphericalGaussian {
+    #[inline]
+    fn value(&self, outgoing: Vec3) -> f32 {
+        self.lanes().value(outgoing.into())
+    }
+
+    fn is_empty(&self) -> bool {
+        self.amplitude <= 0.0
+    }
+
+    #[inline]
+    fn numbers(&self) -> LobeNumbers<f32> {
+        let axis = self.axis;
+        padded([axis.x, axis.y, axis.z, self.sharpness, self.amplitude])
+    }
+
+    fn numbers_in_use() -> usize {
+        5
+    }
+
+    fn has_more_than_numbers() -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn value_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        _: impl Fn(usize) -> Option<&'a Self>,
+        outgoing: Vector3<N>,
+    ) -> N {
+        let [x, y, z, sharpness, amplitude, ..] = *numbers;
+        let lobes = SphericalGaussians {
+            axis: Vector3::new(x, y, z),
+            sharpness,
+            amplitude,
+        };
+        lobes.value(outgoing)
+    }
+}
+
+/// A [`SphericalGaussian`] in each lane.
+#[derive(Clone, Copy)]
+pub(crate) struct SphericalGaussians<N> {
+    /// ξ
+    pub axis: Vector3<N>,
+    /// λ
+    pub sharpness: N,
+    /// c
+    pub amplitude: N,
+}
+
+impl<N: Single> SphericalGaussians<N> {
+    /// c exp(−½λ‖ω − ξ‖²), which is never above c, and zero for NaN.
+    ///
+    /// The exponent is computed in double precision, from the difference of the vectors, since λ multiplies
+    /// the rounding of their dot product.
+    #[inline(always)]
+    pub fn value(&self, outgoing: Vector3<N>) -> N {
+        let apart = outgoing.widen() - self.axis.widen();
+        let half = self.sharpness.widen() * 0.5;
+        let power = exponential(-(half * apart.length_squared()));
+        N::narrow(self.amplitude.widen() * power)
+    }
+}
