@@ -13,6 +13,7 @@
 //! |---|---|---|
 //! | lobe | surface, incoming direction | what it reflects: [`GgxLobe`], [`LambertLobe`] and others |
 //! | light | lobe, position, flux | radiant intensity: [`Vpl`] |
+//! | cluster | many lights | one smooth light: [`ClusterSums`], [`Vsgl`] |
 //! | ξ | rank of a light, frame | random number: [`Xi`], [`Seed`], [`rank_along_curve`] |
 //! | range | radiant intensity, ξ | range and weight: [`Roulette`] |
 //! | bound | lobe, range | shape that encloses the range: [`Ellipsoid`], [`Spheroid`], [`Sphere`] |
@@ -165,6 +166,7 @@
 //! - Segovia et al. 2006, *Non-interleaved deferred shading of interleaved sample patterns*.
 //! - Stewart 2015, *Compute-based tiled culling*.
 //! - Toksvig 2005, *Mipmapping normal maps*.
+//! - Tokuyoshi 2015, *Virtual spherical Gaussian lights for real-time glossy indirect illumination*.
 //! - Tokuyoshi 2016, *Modified filtered importance sampling for virtual spherical Gaussian lights*, the
 //!   supplemental material; Tokuyoshi et al. 2024, *Hierarchical light sampling with accurate spherical
 //!   Gaussian lighting*.
@@ -216,7 +218,9 @@ pub use cull::{
 };
 #[cfg(feature = "bytemuck")]
 pub use interop::{GpuEllipsoid, GpuSphere};
-pub use light::{DistanceWindow, FrameSeed, Roulette, Seed, Vpl, Xi, rank_along_curve};
+pub use light::{
+    ClusterSums, DistanceWindow, FrameSeed, Roulette, Seed, Vpl, Vsgl, Xi, rank_along_curve,
+};
 pub use lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Conductor, ConstantLobe,
     Dielectric, Fresnel, FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, Incidence, LambertLobe,

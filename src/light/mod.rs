@@ -1,15 +1,19 @@
-//! Lights, and the Russian roulette that decides how far a light reaches in a frame and with which weight.
+//! Lights and clusters of lights, and the Russian roulette that decides how far a light reaches in a frame and with which weight.
 
+mod cluster;
 mod curve;
 mod roulette;
 mod vpl;
+mod vsgl;
 mod window;
 mod xi;
 
+pub use cluster::ClusterSums;
 pub use curve::rank_along_curve;
 pub use roulette::Roulette;
 pub use vpl::Vpl;
 #[cfg(feature = "cull")]
 pub(crate) use vpl::unit;
+pub use vsgl::Vsgl;
 pub use window::DistanceWindow;
 pub use xi::{FrameSeed, Seed, Xi};

@@ -15,6 +15,7 @@ mod lambert;
 mod lanes_tests;
 mod masking;
 mod phong;
+mod reflected_gaussian;
 mod spherical_gaussian;
 mod spot;
 
@@ -34,6 +35,7 @@ pub use lambert::LambertLobe;
 pub use masking::{HeightCorrelated, MaskingShadowing, Separable};
 pub use phong::PhongLobe;
 pub use spherical_gaussian::SphericalGaussian;
+pub(crate) use spherical_gaussian::{direction_along, solid_angle, toksvig};
 pub use spot::SpotLobe;
 
 use glam::Vec3;

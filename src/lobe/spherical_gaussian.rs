@@ -175,6 +175,16 @@ impl SphericalGaussian {
         Self::with_integral(axis, sharpness, integral)
     }
 
+    /// The SG of numbers that are known to be valid.
+    #[inline]
+    pub(crate) fn of_parts(axis: Direction, sharpness: f32, amplitude: f32) -> Self {
+        Self {
+            axis,
+            sharpness,
+            amplitude,
+        }
+    }
+
     /// The axis ξ.
     #[must_use]
     pub fn axis(&self) -> Direction {
@@ -265,8 +275,8 @@ impl SphericalGaussian {
     /// its ends, and NaN to 0.
     #[must_use]
     pub fn sample(&self, numbers: [f32; 2]) -> Direction {
-        // NaN becomes zero.
-        let [x, turn] = numbers.map(|number| number.max(0.0).min(1.0));
+        // Zero for NaN.
+        let [x, turn] = numbers.map(|number| if number > 0.0 { number.min(1.0) } else { 0.0 });
         let (x, sharpness) = (f64::from(x), f64::from(self.sharpness));
         let height = if sharpness > 1e-9 {
             -ln_1p_f64(-x * one_minus_exponential(2.0 * sharpness)) / sharpness
@@ -317,10 +327,12 @@ fn valid_sharpness(sharpness: f32) -> Result<f32, Error> {
     )
 }
 
-/// The direction along `vector`, which is `length` long. `None` if that is zero.
+/// The direction along `vector`, which is `length` long. `None` if that is zero, infinite or NaN.
 pub(crate) fn direction_along(vector: Vector3<f64>, length: f64) -> Option<Direction> {
     // A square below the normal range would lose the direction.
-    (length > 1e-150).then(|| Direction::from_unit(Vector3::narrow(vector / length).into()))
+    (1e-150..=f64::MAX)
+        .contains(&length)
+        .then(|| Direction::from_unit(Vector3::narrow(vector / length).into()))
 }
 
 /// The axis and the sharpness ‖ξ̄‖/(1 − ‖ξ̄‖) of the SG with the mean direction `mean`, where

@@ -4,11 +4,11 @@ use std::hint::black_box;
 
 use fastrand::Rng;
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Bounded, Camera, Conductor,
-    ConstantLobe, DepthInterval, Dielectric, Direction, DistanceWindow, Ellipsoid, Fresnel,
-    FresnelMajorant, Ggx, GgxLobe, Incidence, Interleave, LambertLobe, Lobe, NoFresnel, Paper,
-    PhongLobe, PixelRectangle, Proxy, Roulette, Schlick, Seed, Sphere, SphericalGaussian, SpotLobe,
-    Tight, TileGrid, TileRectangle, Triaxial, Vpl, Xi,
+    AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Bounded, Camera, ClusterSums,
+    Conductor, ConstantLobe, DepthInterval, Dielectric, Direction, DistanceWindow, Ellipsoid,
+    Fresnel, FresnelMajorant, Ggx, GgxLobe, Incidence, Interleave, LambertLobe, Lobe, NoFresnel,
+    Paper, PhongLobe, PixelRectangle, Proxy, Roulette, Schlick, Seed, Sphere, SphericalGaussian,
+    SpotLobe, Tight, TileGrid, TileRectangle, Triaxial, Vpl, Vsgl, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
 use support::adversary::{Light, Tile};
@@ -229,6 +229,30 @@ fn gaussians(bits: &mut Bits, cameras: &[Camera]) {
             assert!(other.product_integral(&lobe) >= 0.0);
             assert!(other.value(bits.vector()) >= 0.0);
             assert!(other.scaled(bits.number()).amplitude() >= 0.0);
+        }
+        assert!((0.0..=1.0).contains(&lobe.share_above(other)));
+        if let Ok(ggx) = Ggx::new(bits.number()) {
+            let seen = GgxLobe::new(ggx, NoFresnel, incidence);
+            assert!(seen.product_integral(&lobe) >= 0.0);
+            assert!(seen.product_integral_by_asg(&lobe) >= 0.0);
+        }
+        if let Ok(light) = Vsgl::new(bits.vector(), bits.number(), lobe) {
+            let point = bits.vector();
+            assert!(light.scalar_irradiance(point) >= 0.0);
+            probe::direction(light.incoming(point).axis());
+            assert!(light.incoming(point).integral() >= 0.0);
+        }
+        let sums = ClusterSums::of_light(
+            bits.vector(),
+            bits.number(),
+            &lobe,
+            &lobes[0].unwrap_or(lobe),
+        );
+        if let Ok(sums) = sums {
+            let light = (sums.scaled(bits.number()) + sums).glossy();
+            assert!(light.lobe().integral() >= 0.0 && light.spread() >= 0.0);
+            probe::direction(light.lobe().axis());
+            assert!(light.position().is_finite());
         }
         probe::saved(&lobe);
         probe::light(lobe, cameras);
