@@ -116,6 +116,7 @@
 //! It holds for
 //!
 //! - α from 2⁻²⁰ to 1, every μ > 0, and ξ from 2⁻³²;
+//! - spot lights with an outer cone from 10⁻³ rad to 180°, of which the numbers are [`SpotLobe::versines`];
 //! - ranges from 10⁻¹² to 10¹², and lights up to 10⁶ ranges from the origin and from the eye;
 //! - views of any rotation, handedness and offset, with corners up to 89.7° from the viewing direction;
 //! - lights around and behind the eye, and depth intervals of zero thickness.
