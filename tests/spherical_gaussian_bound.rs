@@ -141,6 +141,7 @@ impl Sub for Function {
 
 impl Mul for Function {
     type Output = Self;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the product rule")]
     fn mul(self, other: Self) -> Self {
         Self {
             value: self.value * other.value,

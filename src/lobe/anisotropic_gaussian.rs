@@ -185,7 +185,8 @@ impl AnisotropicSphericalGaussian {
             .axes
             .map(|axis| Vector3::from(axis).widen().dot(direction));
         if z > 0.0 {
-            z * exponential(-(first * x * x + second * y * y))
+            // Finite for directions that are not.
+            z.min(1.0) * exponential(-(first * x * x + second * y * y))
         } else {
             0.0
         }
