@@ -115,7 +115,7 @@
 //!
 //! It holds for
 //!
-//! - α from 2⁻²⁰ to 1, every μ > 0, and ξ from 2⁻³²;
+//! - α from 2⁻²⁰ to 1, every μ > 0, sharpnesses to 2²², and ξ from 2⁻³²;
 //! - spot lights with an outer cone from 10⁻³ rad to 180°, of which the numbers are [`SpotLobe::versines`];
 //! - ranges from 10⁻¹² to 10¹², and lights up to 10⁶ ranges from the origin and from the eye;
 //! - views of any rotation, handedness and offset, with corners up to 89.7° from the viewing direction;
@@ -126,7 +126,8 @@
 //!
 //! Two parts rest on more than counted roundings. The quasi-convexity of F of a [`Conductor`] is not proved;
 //! a search supports it. The ellipsoids of the table behind [`Tight`], between whose knots it interpolates,
-//! are proved to enclose by a computer, box by box: `examples/tabulate -- --prove`.
+//! are proved to enclose by a computer, box by box: `examples/tabulate -- --prove`. The ellipsoid of a
+//! [`SphericalGaussian`] is proved likewise, by a test.
 //!
 //! The cost: at α ≥ 0.01 and ranges of at least 10⁻³ of the distance to the eye and to the origin, the
 //! volume of ellipsoids grows by less than 0.1 % on average; at α = 10⁻⁶ by a large factor.

@@ -11,7 +11,7 @@ use stochastic_light_culling::{
 };
 use support::generators::{self, cases};
 use support::quadrature::integral;
-use support::reference::{Vector, anisotropic_ndf, ggx_ndf};
+use support::reference::Vector;
 
 /// An SG in double precision, of unit amplitude.
 #[derive(Clone, Copy)]
@@ -83,8 +83,9 @@ fn integral_and_normalisation_agree_with_quadrature() {
 #[test]
 fn products_agree_with_quadrature() {
     let mut worst = 0.0_f64;
-    for first in SHARPNESSES {
-        for second in SHARPNESSES {
+    let every_other = || SHARPNESSES.into_iter().step_by(2).chain([1e6, 4_194_304.0]);
+    for first in every_other() {
+        for second in every_other() {
             let reach = (1.0 / (1.0 + f64::from(first)) + 1.0 / (1.0 + f64::from(second))).sqrt();
             for off in [0.0, 0.3, 1.0, 4.0, f64::INFINITY] {
                 let side = SLANTED.orthogonal();
@@ -372,15 +373,6 @@ fn specular_asg_follows_the_half_vector() {
         );
         let peak = f64::from(lobe.value(*lobe.axis()));
         assert_relative_eq!(peak, 1.0, max_relative = 1e-6);
-        let largest = anisotropic_ndf(roughness, [0.0; 2], 1.0);
-        assert!(
-            largest
-                >= ggx_ndf(
-                    f64::from(roughness[0].max(roughness[1])),
-                    Vector([0.0, 0.0, 1.0]),
-                    Vector([0.0, 0.0, 1.0])
-                ) * 0.999_999
-        );
     }
 }
 

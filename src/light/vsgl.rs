@@ -123,7 +123,8 @@ impl Vsgl {
 
     /// The integral E = ∫L_in dω of the [`incoming`](Self::incoming) radiance over all directions, in W/m².
     ///
-    /// From afar it is I/l², the radiance of a point light as roulette takes it. It never grows along a way out
+    /// From afar it is I/l², the radiance of a point light, and a [`Roulette`](crate::Roulette) takes it as the
+    /// intensity of a light at unit distance. It never grows along a way out
     /// from the centre. At the centre it is c_v(1 − e^{−2λ})/(λσ²), and infinite for σ = 0. Zero if the lobe is
     /// zero, and at points that are not finite. It is computed in double precision, and rounded once.
     #[must_use]
