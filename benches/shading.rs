@@ -12,7 +12,7 @@ use std::time::Duration;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use stochastic_light_culling::{
     Conductor, Dielectric, Direction, Estimate, Fresnel, Ggx, GgxLobe, Incidence, LambertLobe,
-    Lobe, NoFresnel, PointBlock, RadianceEstimator, Roulette, Schlick, Seed, ShadedPoint,
+    Lobe, LtcLobe, NoFresnel, PointBlock, RadianceEstimator, Roulette, Schlick, Seed, ShadedPoint,
     ShadingBatch, Vpl, Xi, glam::Vec3,
 };
 
@@ -257,6 +257,21 @@ fn shading(criterion: &mut Criterion) {
         &Scene::new(30, ggx(gold)),
         &[16],
         is_lit,
+    );
+    let transformed = |i| {
+        let lobe = ggx(NoFresnel)(i);
+        LtcLobe::new(
+            lobe.ggx(),
+            Schlick::new(0.5).expect("in range"),
+            lobe.incidence(),
+        )
+    };
+    evaluate(
+        &mut group,
+        "transformed cosine",
+        &Scene::new(30, transformed),
+        &[16, 8, 4],
+        |lobe, way| lobe.normal().dot(way) > 0.0,
     );
     let lambert = |i| LambertLobe::new(0.5, direction(random_vector(i, 0))).expect("in range");
     evaluate(

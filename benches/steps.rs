@@ -9,7 +9,7 @@ use std::hint::black_box;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Bounded, Camera, Conductor, DepthInterval, Dielectric,
-    Direction, Ellipsoid, Fresnel, Ggx, GgxLobe, Incidence, Interleave, LambertLobe, Lobe,
+    Direction, Ellipsoid, Fresnel, Ggx, GgxLobe, Incidence, Interleave, LambertLobe, Lobe, LtcLobe,
     NoFresnel, Paper, PhongLobe, Proxy, Roulette, Schlick, Seed, Spheroid, Tight, TileGrid,
     Triaxial, Vpl, Xi,
     glam::{Mat3, Vec3},
@@ -143,6 +143,21 @@ fn brdf(criterion: &mut Criterion) {
         &mut group,
         "ggx, conductor",
         Conductor::new(0.2, 3.5).expect("in range"),
+    );
+    let schlick = Schlick::new(0.9).expect("in range");
+    let inputs: Vec<_> = glossy_lights(NoFresnel)
+        .into_iter()
+        .zip(0..)
+        .map(|(light, i)| {
+            let lobe = LtcLobe::new(light.lobe().ggx(), schlick, light.lobe().incidence());
+            (lobe, *direction(random_vector(i, 9)))
+        })
+        .collect();
+    per_item(
+        &mut group,
+        "transformed cosine",
+        &inputs,
+        |(lobe, outgoing)| lobe.value(*outgoing),
     );
     let inputs: Vec<_> = diffuse_lights()
         .into_iter()

@@ -146,6 +146,7 @@
 //!   is `no_std`. One of the two is required; with both, `std` is used.
 //! - `cull`: many lights against many tiles, and their evaluation, in the widest vectors of the processor. Needs an allocator and
 //!   Rust 1.89.
+//! - `ltc`: `LtcLobe`, a linearly transformed cosine in the place of a GGX lobe, with its table of 49 kB.
 //! - `rayon`: culling on many cores. Enables `cull` and `std`.
 //! - `serde`: serialization of materials, lobes, lights, cameras, and settings such as roulette, ξ, tile
 //!   grids, depth intervals and interleaving, most under the names of the constructors' arguments. Values
@@ -159,6 +160,8 @@
 //! - Dachsbacher & Stamminger 2006, *Splatting indirect illumination*.
 //! - Ericson 2005, *Real-time collision detection*.
 //! - Heitz 2014, *Understanding the masking-shadowing function in microfacet-based BRDFs*.
+//! - Heitz, Dupuy, Hill & Neubelt 2016, *Real-time polygonal-light shading with linearly transformed
+//!   cosines*.
 //! - Jarzynski & Olano 2020, *Hash functions for GPU rendering*.
 //! - Karis 2013, *Real shading in Unreal Engine 4*.
 //! - Keller 1997, *Instant radiosity*.
@@ -178,6 +181,8 @@
 //!   *Anisotropic spherical Gaussians*.
 //! - Trowbridge & Reitz 1975, *Average irregularity representation of a rough surface for ray
 //!   reflection*; Walter et al. 2007, *Microfacet models for refraction through rough surfaces*.
+//! - Xia, Liu, Zeng, Pu & Zhang 2023, *Real-time indirect glossy reflection based on linearly transformed
+//!   spherical distributions*.
 
 #![no_std]
 #![forbid(unsafe_code)]
@@ -223,6 +228,8 @@ pub use interop::{GpuEllipsoid, GpuSphere};
 pub use light::{
     ClusterSums, DistanceWindow, FrameSeed, Roulette, Seed, Vpl, Vsgl, Xi, rank_along_curve,
 };
+#[cfg(feature = "ltc")]
+pub use lobe::LtcLobe;
 pub use lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Conductor, ConstantLobe,
     Dielectric, Fresnel, FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, Incidence, LambertLobe,

@@ -5,9 +5,9 @@ use proptest::prelude::*;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BoundStrategy, Bounded, BoxTest, Camera,
     Conductor, ConstantLobe, Dielectric, Direction, Ellipsoid, Focal, Fresnel, Ggx, GgxLobe,
-    Incidence, LambertLobe, LightBatch, Lobe, MaskingShadowing, NoFresnel, OwnBound, Paper,
-    PhongLobe, Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Seed, Sphere,
-    SphericalGaussian, Spheroid, SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    Incidence, LambertLobe, LightBatch, Lobe, LtcLobe, MaskingShadowing, NoFresnel, OwnBound,
+    Paper, PhongLobe, Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Seed,
+    Sphere, SphericalGaussian, Spheroid, SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 use support::generators::{self, Lit, cases, log_uniform};
 
@@ -314,6 +314,9 @@ proptest! {
         };
         frame.same_lights(Tight, gaussian)?;
         frame.same_lights(Focal, gaussian)?;
+        frame.same_lights(Tight, |light| {
+            LtcLobe::new(Ggx::new(light.roughness).unwrap(), NoFresnel, light.incidence())
+        })?;
         frame.same_lights(OwnBound, |light| Windowed(light.lit.normal))?;
     }
 

@@ -4,9 +4,9 @@
 use proptest::prelude::*;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, ConstantLobe, Dielectric, Direction, Estimate,
-    Fresnel, Ggx, GgxLobe, Incidence, LambertLobe, Lobe, MaskingShadowing, NoFresnel, PhongLobe,
-    PointBlock, RadianceEstimator, Roulette, Schlick, ShadedPoint, ShadingBatch, SphericalGaussian,
-    SpotLobe, Vpl, Xi, glam::Vec3,
+    Fresnel, Ggx, GgxLobe, Incidence, LambertLobe, Lobe, LtcLobe, MaskingShadowing, NoFresnel,
+    PhongLobe, PointBlock, RadianceEstimator, Roulette, Schlick, ShadedPoint, ShadingBatch,
+    SphericalGaussian, SpotLobe, Vpl, Xi, glam::Vec3,
 };
 use support::{
     generators::{self, Lit, cases, log_uniform, unit_vector},
@@ -408,6 +408,10 @@ proptest! {
         frame.same(|light| {
             let sharpness = SphericalGaussian::MAX_SHARPNESS * light.roughness.powi(4);
             SphericalGaussian::new(light.lit.normal, sharpness, light.share).unwrap()
+        })?;
+        frame.same(|light| {
+            let schlick = Schlick::new(light.share).unwrap();
+            LtcLobe::new(Ggx::new(light.roughness).unwrap(), schlick, light.incidence())
         })?;
         frame.same(|light| Windowed(light.lit.normal))?;
     }

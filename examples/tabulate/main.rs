@@ -1,11 +1,16 @@
-//! Makes the table of the tight bound, and proves that its ellipsoids enclose.
+//! Makes the table of the tight bound, and proves that its ellipsoids enclose. Makes the table of linearly
+//! transformed cosines too, and prints its errors.
 //!
 //! ```text
-//! cargo run --release --example tabulate            # writes src/bound/table.bin
-//! cargo run --release --example tabulate -- --prove # proves the one that is there, in minutes
+//! cargo run --release --example tabulate                 # writes src/bound/table.bin
+//! cargo run --release --example tabulate -- --prove      # proves the one that is there, in minutes
+//! cargo run --release --example tabulate -- --ltc        # writes src/lobe/ltc.bin
+//! cargo run --release --example tabulate -- --ltc-errors # prints the errors of the one that is there, as CSV
 //! ```
 
 mod fit;
+mod ltc;
+mod ltc_errors;
 mod make;
 
 use std::process::ExitCode;
@@ -23,6 +28,12 @@ struct Arguments {
     /// Prove the table that is there, instead of making it.
     #[arg(long)]
     prove: bool,
+    /// Make the table of linearly transformed cosines.
+    #[arg(long, conflicts_with = "prove")]
+    ltc: bool,
+    /// Print how far the linearly transformed cosines are from GGX.
+    #[arg(long, conflicts_with_all = ["prove", "ltc"])]
+    ltc_errors: bool,
     /// Boxes after which a cell is given up.
     #[arg(long, default_value_t = 10_000_000)]
     boxes: usize,
@@ -32,12 +43,21 @@ fn main() -> ExitCode {
     command::run(|arguments: Arguments| {
         if arguments.prove {
             prove(&arguments)
+        } else if arguments.ltc_errors {
+            ltc_errors::print();
+            Ok(())
+        } else if arguments.ltc {
+            write("src/lobe/ltc.bin", &ltc::table())
         } else {
             let bytes: Vec<u8> = make::table().iter().flat_map(|x| x.to_le_bytes()).collect();
-            let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/bound/table.bin");
-            std::fs::write(path, bytes).map_err(|error| format!("{path}: {error}"))
+            write("src/bound/table.bin", &bytes)
         }
     })
+}
+
+fn write(path: &str, bytes: &[u8]) -> Result<(), String> {
+    let path = format!("{}/{path}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::write(&path, bytes).map_err(|error| format!("{path}: {error}"))
 }
 
 fn prove(arguments: &Arguments) -> Result<(), String> {

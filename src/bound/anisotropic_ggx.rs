@@ -49,16 +49,13 @@
 //! ellipsoids is used; for α_x = α_y it is always the isotropic one.
 
 use super::ellipsoid::Ellipsoids;
-use super::principal_axes::principal_axes;
+use super::principal_axes::{ellipsoids_along, principal_axes};
 use super::shape::{Quads, padded};
 use super::triaxial::{ellipsoids_around, ndf_radius_squared};
 use super::{BoundStrategy, Bounded, Ellipsoid, Triaxial};
 use crate::lobe::{AnisotropicGgxLobe, Fresnel, GgxLobes, MaskingShadowing, SurfaceAxes};
-use crate::num::{Double, Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3, exact_dot};
+use crate::num::{Double, Real, Single, Vector3, exact_dot};
 
-/// Pays for rounding axes and centre to `f32`, in units of u times the longest semi-axis and the centre's
-/// length.
-const POINT_ROUNDINGS: f64 = 4.0;
 /// Pays for the rounding of r′ and of its product with a semi-axis.
 const SEMI_AXIS_ROUNDINGS: u16 = 24;
 
@@ -178,45 +175,16 @@ impl<D: Double> Incidence<D> {
     }
 
     /// The ellipsoids of the module documentation, for r′ = `scale`.
-    ///
-    /// A ball is added, whose radius d is the distance by which rounding to `f32` moves a point. For any
-    /// t > 0, the sum of an ellipsoid with the semi-axes aᵢ and this ball lies in the ellipsoid with the
-    /// squared semi-axes (1+t)aᵢ² + (1+1/t)d².
     #[inline(always)]
     fn ellipsoids<N: Single<Double = D>>(&self, scale: N) -> Ellipsoids<N> {
         let (center, columns) = self.image_of_ball();
         let [a, b, c, d, e] = columns;
-        let (axes, semi_axes) = principal_axes([
+        let principal = principal_axes([
             [a.x, b.x, c.x, d.x, e.x],
             [a.y, b.y, c.y, d.y, e.y],
             [a.z, b.z, c.z, d.z, e.z],
         ]);
-
-        let [a, b, c] = semi_axes;
-        let (shortest, longest) = (a.min(b).min(c), a.max(b).max(c));
-        // Half an ulp in each component of the three axes and of the centre.
-        let moved = (longest + center.length()) * (POINT_ROUNDINGS * f64::from(UNIT_ROUNDOFF));
-        let one = moved.splat(1.0);
-        let share = (moved / shortest).min(one);
-        let enlarged = |a: D| {
-            let squared = (share + 1.0) * a * a + (one / share + 1.0) * moved * moved;
-            (N::narrow(squared.sqrt()) * scale).round_up(SEMI_AXIS_ROUNDINGS)
-        };
-        let axis = |axis: Vector3<D>| Vector3::narrow(self.to_world(axis, one));
-        Ellipsoids {
-            parts: [
-                Vector3::zero(scale),
-                Vector3::narrow(self.to_world(center, scale.widen())),
-            ],
-            axes: Matrix3::new(axis(axes[0]), axis(axes[1]), axis(axes[2])),
-            semi_axes: Vector3::new(enlarged(a), enlarged(b), enlarged(c)),
-        }
-    }
-
-    #[inline(always)]
-    fn to_world(&self, v: Vector3<D>, scale: D) -> Vector3<D> {
-        let [x, y, z] = self.frame;
-        Vector3::combine([(scale * v.x, x), (scale * v.y, y), (scale * v.z, z)])
+        ellipsoids_along(&self.frame, center, principal, scale, SEMI_AXIS_ROUNDINGS)
     }
 
     /// The centre and the five columns of the module documentation, in the frame (ω_u, ω_v, ω_w).

@@ -11,6 +11,8 @@ mod ellipsoid;
 mod extent;
 mod half_space;
 mod lambert;
+#[cfg(feature = "ltc")]
+mod ltc;
 mod paper;
 mod phong;
 mod principal_axes;

@@ -1,6 +1,11 @@
 //! The principal axes of an ellipsoid that is the image of a ball.
 
-use crate::num::{Double, Vector3};
+use super::Ellipsoids;
+use crate::num::{Double, Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3};
+
+/// Pays for rounding axes and centre to `f32`, in units of u times the longest semi-axis and the centre's
+/// length.
+const POINT_ROUNDINGS: f64 = 4.0;
 
 /// The orthonormal axes and the semi-axes of an ellipsoid that contains {Az : ‖z‖ ≤ 1} tightly, where `rows`
 /// are the rows of A, none of them zero.
@@ -55,6 +60,46 @@ pub(super) fn principal_axes<D: Double, const K: usize>(
             lengths[2] * growth,
         ],
     )
+}
+
+/// The ellipsoids with these principal axes around `center`, whose coordinates are those of `frame`, times
+/// `scale`. They are rounded outward; `roundings` pay for the rounding of `scale` and of its products.
+///
+/// A ball is added, whose radius d is the distance by which rounding to `f32` moves a point. For any t > 0,
+/// the sum of an ellipsoid with the semi-axes aᵢ and this ball lies in the ellipsoid with the squared
+/// semi-axes (1+t)aᵢ² + (1+1/t)d².
+#[inline(always)]
+pub(super) fn ellipsoids_along<N: Single>(
+    frame: &[Vector3<N::Double>; 3],
+    center: Vector3<N::Double>,
+    (axes, semi_axes): ([Vector3<N::Double>; 3], [N::Double; 3]),
+    scale: N,
+    roundings: u16,
+) -> Ellipsoids<N> {
+    let [a, b, c] = semi_axes;
+    let (shortest, longest) = (a.min(b).min(c), a.max(b).max(c));
+    // Half an ulp in each component of the three axes and of the centre.
+    let moved = (longest + center.length()) * (POINT_ROUNDINGS * f64::from(UNIT_ROUNDOFF));
+    let one = moved.splat(1.0);
+    let share = (moved / shortest).min(one);
+    let enlarged = |a: N::Double| {
+        let squared = (share + 1.0) * a * a + (one / share + 1.0) * moved * moved;
+        (N::narrow(squared.sqrt()) * scale).round_up(roundings)
+    };
+    let to_world = |v: Vector3<N::Double>, factor: N::Double| {
+        let [x, y, z] = *frame;
+        let terms = [(factor * v.x, x), (factor * v.y, y), (factor * v.z, z)];
+        Vector3::narrow(Vector3::combine(terms))
+    };
+    Ellipsoids {
+        parts: [Vector3::zero(scale), to_world(center, scale.widen())],
+        axes: Matrix3::new(
+            to_world(axes[0], one),
+            to_world(axes[1], one),
+            to_world(axes[2], one),
+        ),
+        semi_axes: Vector3::new(enlarged(a), enlarged(b), enlarged(c)),
+    }
 }
 
 #[inline(always)]

@@ -13,6 +13,10 @@ mod incidence;
 mod lambert;
 #[cfg(all(test, feature = "cull"))]
 mod lanes_tests;
+#[cfg(feature = "ltc")]
+mod ltc_lobe;
+#[cfg(feature = "ltc")]
+mod ltc_table;
 mod masking;
 mod phong;
 mod reflected_gaussian;
@@ -32,6 +36,8 @@ pub use ggx_lobe::GgxLobe;
 pub(crate) use ggx_lobe::{GgxLobes, PlaneOfIncidence};
 pub use incidence::Incidence;
 pub use lambert::LambertLobe;
+#[cfg(feature = "ltc")]
+pub use ltc_lobe::LtcLobe;
 pub use masking::{HeightCorrelated, MaskingShadowing, Separable};
 pub use phong::PhongLobe;
 pub use spherical_gaussian::SphericalGaussian;

@@ -6,9 +6,9 @@ use fastrand::Rng;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Bounded, Camera, ClusterSums,
     Conductor, ConstantLobe, DepthInterval, Dielectric, Direction, DistanceWindow, Ellipsoid,
-    Fresnel, FresnelMajorant, Ggx, GgxLobe, Incidence, Interleave, LambertLobe, Lobe, NoFresnel,
-    Paper, PhongLobe, PixelRectangle, Proxy, Roulette, Schlick, Seed, Sphere, SphericalGaussian,
-    SpotLobe, Tight, TileGrid, TileRectangle, Triaxial, Vpl, Vsgl, Xi,
+    Fresnel, FresnelMajorant, Ggx, GgxLobe, Incidence, Interleave, LambertLobe, Lobe, LtcLobe,
+    NoFresnel, Paper, PhongLobe, PixelRectangle, Proxy, Roulette, Schlick, Seed, Sphere,
+    SphericalGaussian, SpotLobe, Tight, TileGrid, TileRectangle, Triaxial, Vpl, Vsgl, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
 use support::adversary::{Light, Tile};
@@ -45,6 +45,12 @@ fn glossy(bits: &mut Bits, cameras: &[Camera]) {
     let (Ok(ggx), Some([normal, incoming])) = (Ggx::new(bits.number()), directions(bits)) else {
         return;
     };
+    let incidence = Incidence { normal, incoming };
+    probe::light(LtcLobe::new(ggx, NoFresnel, incidence), cameras);
+    let elements = [(); 4].map(|()| bits.number());
+    if let Ok(lobe) = LtcLobe::with_matrix(elements, bits.number(), incidence) {
+        probe::light(lobe, cameras);
+    }
     let tag = bits.byte();
     if let Ok(schlick) = Schlick::new(bits.number()) {
         let lobe = GgxLobe::new(ggx, schlick, Incidence { normal, incoming });

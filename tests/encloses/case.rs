@@ -10,7 +10,9 @@ use stochastic_light_culling::{
     glam::Vec3,
 };
 use support::generators::{self, Lit};
-use support::reference::{Brdf, Fresnel, GivenFresnel, MaskedAlone, Masking, Shape, Vector};
+use support::reference::{
+    Brdf, Fresnel, GivenFresnel, MaskedAlone, Masking, Shape, Vector, ltc_rows,
+};
 
 /// What the crate says of a GGX light.
 pub struct GgxBounds {
@@ -207,6 +209,9 @@ impl Case {
                     ("sphere around an SG", focal.enclosing_sphere().into()),
                 ]
             }
+            Brdf::Ltc { lobe, .. } => {
+                vec![("ellipsoid of a transformed cosine", self.bound(lobe).into())]
+            }
             Brdf::Constant => vec![("sphere of a point light", self.bound(ConstantLobe).into())],
         }
     }
@@ -224,7 +229,7 @@ impl Case {
         };
         let in_plane = across.cross(mirror);
         let width = match self.brdf {
-            Brdf::Ggx { roughness, .. } => f64::from(roughness),
+            Brdf::Ggx { roughness, .. } | Brdf::Ltc { roughness, .. } => f64::from(roughness),
             Brdf::Anisotropic { roughness, .. } => f64::from(roughness[0].min(roughness[1])),
             Brdf::Phong { exponent, .. } => (1.0 / (2.0 + 2.0 * f64::from(exponent))).sqrt(),
             Brdf::SphericalGaussian { sharpness, .. } => {
@@ -250,6 +255,18 @@ impl Case {
                     directions.push(surface.normal.turned(side, angle));
                 }
             }
+        }
+        if let Brdf::Ltc { lobe, .. } = self.brdf {
+            // What M maps evenly spread directions to.
+            let [first, third] = ltc_rows(&lobe);
+            let second = third.cross(first);
+            let columns = [second.cross(third), second, first.cross(second)];
+            directions.extend((0..300).map(|i| {
+                let height = (f64::from(i) + 0.5) / 300.0;
+                let (radius, azimuth) = ((1.0 - height * height).sqrt(), 2.399_963 * f64::from(i));
+                let [x, y] = [azimuth.cos(), azimuth.sin()].map(|x| radius * x);
+                (columns[0] * x + columns[1] * y + columns[2] * height).unit()
+            }));
         }
         for step in 0..48 {
             // Even in the half angle's tangent over α, so that narrow lobes are covered too.
@@ -279,7 +296,9 @@ pub fn case() -> impl Strategy<Value = Case> {
         generators::roulette(),
     )
         .prop_map(|(brdf, lit, position, roulette)| Case {
-            brdf: brdf.laid_on(lit.surface.normal),
+            brdf: brdf
+                .laid_on(lit.surface.normal)
+                .lit_by(lit.normal, lit.incoming),
             lit,
             position,
             roulette,

@@ -217,6 +217,25 @@ pub fn sharpness() -> impl Strategy<Value = f32> {
     sharpness.prop_map(|x: f64| x as f32)
 }
 
+/// The elements of a matrix that a caller may give to a transformed cosine.
+fn ltc_matrix() -> impl Strategy<Value = [f32; 4]> {
+    let length = || log_uniform(0.1, 1e5);
+    let between = up_to_one(2e-4).prop_map(|share| 0.5 * std::f64::consts::PI * f64::from(share));
+    (0.0..TAU, between, length(), length()).prop_map(|(angle, between, first, third)| {
+        let row = |angle: f64, length: f64| [angle.cos(), angle.sin()].map(|x| x * length);
+        let ([a, b], [c, d]) = (row(angle, first), row(angle + between, third));
+        [a, b, c, d].map(|x| x as f32)
+    })
+}
+
+/// Transformed cosines: fitted to GGX, and of callers' own matrices.
+pub fn ltc() -> impl Strategy<Value = Brdf> {
+    let share = || prop_oneof![3 => 0.001..=1.0_f32, 1 => Just(1.0_f32)];
+    let fitted = (up_to_one(1e-6), share()).prop_map(|(alpha, f0)| Brdf::ltc(alpha, f0, None));
+    let own = (ltc_matrix(), share()).prop_map(|(m, share)| Brdf::ltc(1.0, share, Some(m)));
+    prop_oneof![2 => fitted, 1 => own]
+}
+
 pub fn brdf() -> impl Strategy<Value = Brdf> {
     let albedo = || prop_oneof![3 => 0.001..=1.0_f32, 1 => Just(1.0_f32)];
     let phong = (albedo(), exponent());
@@ -225,6 +244,7 @@ pub fn brdf() -> impl Strategy<Value = Brdf> {
         4 => ggx_brdf(),
         4 => anisotropic_brdf(),
         2 => albedo().prop_map(|albedo| Brdf::Lambert { albedo }),
+        4 => ltc(),
         4 => phong.prop_map(|(albedo, exponent)| Brdf::Phong { albedo, exponent }),
         4 => gaussian.prop_map(|(amplitude, sharpness)| Brdf::SphericalGaussian {
             amplitude: amplitude as f32,

@@ -13,7 +13,7 @@ use twofloat::TwoFloat as Real;
 
 use super::{Bound, chance, direction, log_uniform, unit_vector, up_to_one};
 use crate::reference::exact::{Exact, value};
-use crate::reference::{Brdf, Fresnel, GivenFresnel, MaskedAlone, Masking, Vector};
+use crate::reference::{Brdf, Fresnel, GivenFresnel, MaskedAlone, Masking, Vector, ltc_rows};
 
 /// A light in one frame.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +34,7 @@ impl Light {
         let range = log_uniform(rng, 1e-12, 1e12);
         let distance = range * log_uniform(rng, 1e-3, 1e6);
         let mu = up_to_one(rng, 1e-7);
-        let brdf = match rng.u8(0..16) {
+        let brdf = match rng.u8(0..18) {
             0 => Brdf::Lambert {
                 albedo: up_to_one(rng, 1e-6) as f32,
             },
@@ -47,8 +47,10 @@ impl Light {
                 albedo: up_to_one(rng, 1e-6) as f32,
                 exponent: exponent(rng),
             },
+            16 => Brdf::ltc(up_to_one(rng, 1e-6) as f32, rng.f32(), None),
+            17 => Brdf::ltc(1.0, up_to_one(rng, 1e-6) as f32, Some(matrix(rng))),
             4..6 => Brdf::spot(cone_angles(rng)),
-            6..10 => Brdf::Anisotropic {
+            6..9 => Brdf::Anisotropic {
                 roughness: two_roughnesses(rng),
                 tangent: direction(unit_vector(rng)),
                 fresnel: fresnel(rng),
@@ -70,21 +72,23 @@ impl Light {
         let tangent = tangent.turned(normal.cross(tangent), rng.f64() * TAU);
         let incoming = tangent * (1.0 - mu * mu).sqrt() + normal * mu;
         let normal = direction(normal);
+        // Normal incidence is so to the last bit.
+        let incoming = if mu == 1.0 {
+            normal
+        } else {
+            direction(incoming)
+        };
+        let brdf = brdf.laid_on(Vector::from(*normal));
         let mut light = Self {
-            brdf: brdf.laid_on(Vector::from(*normal)),
+            brdf: brdf.lit_by(normal, incoming),
             normal,
-            // Normal incidence is so to the last bit.
-            incoming: if mu == 1.0 {
-                normal
-            } else {
-                direction(incoming)
-            },
+            incoming,
             position: (unit_vector(rng) * distance).to_f32(),
             flux: 1.0,
             delta: log_uniform(rng, 1e-6, 1e3) as f32,
             xi: up_to_one(rng, 2.0_f64.powi(-32)) as f32,
         };
-        let unit_reach = light.reach(light.peak()).hi().max(1e-15);
+        let unit_reach = light.reach(light.peak().unit()).hi().max(1e-15);
         light.flux = (range / unit_reach).powi(2).clamp(1e-37, 1e37) as f32;
         light
     }
@@ -105,6 +109,11 @@ impl Light {
             | Brdf::Constant
             | Brdf::Spot { .. }
             | Brdf::SphericalGaussian { .. } => n,
+            // Where the first two components of M⁻¹ω vanish.
+            Brdf::Ltc { lobe, .. } => {
+                let [first, third] = ltc_rows(&lobe).map(|row| Exact(row.0.map(Real::from)));
+                first.cross(third.cross(first))
+            }
             _ => n * (n.dot(w) * 2.0) - w,
         }
     }
@@ -135,13 +144,30 @@ impl Light {
                 let tangent = normal.cross(unit_vector(rng));
                 exact(tangent + normal * log_uniform(rng, 1e-8, 1.0)).unit()
             }
+            3..6 if matches!(self.brdf, Brdf::Ltc { .. }) => self.transformed(rng),
             _ => self.about_peak(rng),
         }
     }
 
+    /// A direction that M maps any direction to.
+    fn transformed(&self, rng: &mut Rng) -> Exact {
+        let Brdf::Ltc { lobe, .. } = self.brdf else {
+            return self.peak().unit();
+        };
+        let exact = |row: Vector| Exact(row.0.map(Real::from));
+        let [first, third] = ltc_rows(&lobe).map(exact);
+        let second = third.cross(first);
+        // The columns of M times the determinant.
+        let columns = [second.cross(third), third.cross(first), first.cross(second)];
+        let way = exact(unit_vector(rng));
+        let [x, y, z] = way.0;
+        let z = if z < Real::from(0.0) { -z } else { z };
+        (columns[0] * x + columns[1] * y + columns[2] * z).unit()
+    }
+
     fn about_peak(&self, rng: &mut Rng) -> Exact {
         let width = match self.brdf {
-            Brdf::Ggx { roughness, .. } => f64::from(roughness),
+            Brdf::Ggx { roughness, .. } | Brdf::Ltc { roughness, .. } => f64::from(roughness),
             Brdf::Anisotropic { roughness, .. } => f64::from(roughness[rng.usize(0..2)]),
             Brdf::Phong { exponent, .. } => (1.0 / (2.0 + 2.0 * f64::from(exponent))).sqrt(),
             Brdf::SphericalGaussian { sharpness, .. } => {
@@ -149,7 +175,7 @@ impl Light {
             }
             _ => 1.0,
         };
-        let peak = self.peak();
+        let peak = self.peak().unit();
         let middle = Vector(peak.0.map(|x| x.hi()));
         let across = match Vector::from(*self.normal).cross(Vector::from(*self.incoming)) {
             cross if cross.length() > 1e-7 => cross.unit(),
@@ -223,6 +249,7 @@ impl Light {
                 let lobe = SpotLobe::new(inner, outer, self.normal).expect("in the domain");
                 Bound::Spot(self.bound_of(lobe))
             }
+            Brdf::Ltc { lobe, .. } => Bound::Ltc(self.bound_of(lobe)),
             Brdf::Lambert { albedo } => {
                 let lobe = LambertLobe::new(albedo, self.normal).expect("in the domain");
                 let light = Vpl::new(self.position, self.flux, lobe).expect("in the domain");
@@ -434,4 +461,14 @@ fn exponent(rng: &mut Rng) -> f32 {
         _ => log_uniform(rng, 0.06, 1_048_576.0),
     };
     ((16.0 * exponent).round() / 16.0) as f32
+}
+
+/// The elements of a matrix that [`LtcLobe::with_matrix`](stochastic_light_culling::LtcLobe::with_matrix)
+/// accepts: rows over seven decades, at angles down to 2·10⁻⁴ of each other.
+fn matrix(rng: &mut Rng) -> [f32; 4] {
+    let (angle, between) = (rng.f64() * TAU, up_to_one(rng, 2e-4) * FRAC_PI_2);
+    let [long, short] = [(); 2].map(|()| log_uniform(rng, 0.1, 1e5));
+    let [first, third] = [(angle, long), (angle + between, short)]
+        .map(|(angle, length)| [angle.cos() * length, angle.sin() * length]);
+    [first[0], first[1], third[0], third[1]].map(|x| x as f32)
 }

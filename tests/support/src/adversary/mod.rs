@@ -26,6 +26,7 @@ pub enum Bound {
         focal: Spheroid,
         tight: Ellipsoid,
     },
+    Ltc(Ellipsoid),
     Lambert {
         sphere: Sphere,
         tight: Ellipsoid,
@@ -62,6 +63,7 @@ impl Bound {
             Self::Sphere(bound) => vec![("sphere", sphere(bound))],
             Self::Anisotropic(bound) => vec![("anisotropic ellipsoid", ellipsoid(bound))],
             Self::Spot(bound) => vec![("ellipsoid of a spot light", ellipsoid(bound))],
+            Self::Ltc(bound) => vec![("ellipsoid of a transformed cosine", ellipsoid(bound))],
             Self::Phong(bound) => vec![("ellipsoid of Phong's lobe", ellipsoid(bound))],
             Self::SphericalGaussian { focal, tight } => vec![
                 ("focal spheroid", ellipsoid(focal.into())),

@@ -7,7 +7,7 @@ use stochastic_light_culling::glam::Vec3;
 use twofloat::TwoFloat as Real;
 use twofloat::consts::PI;
 
-use super::{Brdf, Fresnel, Masking, View};
+use super::{Brdf, Fresnel, Masking, Vector, View, ltc_rows};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Exact(pub [Real; 3]);
@@ -96,6 +96,17 @@ pub fn value(brdf: Brdf, normal: Exact, incoming: Exact, outgoing: Exact) -> Rea
         _ if mu_o <= zero => zero,
         Brdf::Lambert { albedo } => mu_o * f64::from(albedo) / PI,
         _ if mu <= zero => zero,
+        Brdf::Ltc { lobe, .. } => {
+            let exact = |row: Vector| Exact(row.0.map(Real::from));
+            let [first, third] = ltc_rows(&lobe).map(exact);
+            let height = third.dot(outgoing);
+            if height <= zero {
+                return zero;
+            }
+            let (side, across) = (first.dot(outgoing), third.cross(first).dot(outgoing));
+            let squared = side * side + across * across + height * height;
+            height * f64::from(lobe.amplitude()) / squared / squared
+        }
         Brdf::Phong { albedo, exponent } => {
             let cosine = (normal * (mu * 2.0) - incoming).dot(outgoing);
             if cosine <= zero {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use stochastic_light_culling::{Direction, SpotLobe};
+use stochastic_light_culling::{Direction, Ggx, Incidence, LtcLobe, Schlick, SpotLobe};
 
 use super::{Fresnel, Vector};
 
@@ -40,6 +40,16 @@ pub enum Brdf {
         amplitude: f32,
         sharpness: f32,
     },
+    /// A transformed cosine. Its matrix is the crate's: `lobe` says what it is for a normal and an incoming
+    /// direction, see [`Brdf::lit_by`].
+    Ltc {
+        roughness: f32,
+        /// A reflectance, or, with a matrix, the magnitude.
+        share: f32,
+        /// A matrix of a caller's own.
+        matrix: Option<[f32; 4]>,
+        lobe: LtcLobe,
+    },
     /// No BRDF, but the intensity of a point light: 1/(4π) everywhere.
     Constant,
     /// No BRDF either, but a spot light along the normal: its inner and outer angle, and 1 − cos of both as
@@ -61,6 +71,34 @@ impl Brdf {
         }
     }
 
+    pub fn ltc(roughness: f32, share: f32, matrix: Option<[f32; 4]>) -> Self {
+        let incidence = Incidence::head_on(Direction::Z);
+        Self::Ltc {
+            roughness,
+            share,
+            matrix,
+            lobe: ltc_lobe(roughness, share, matrix, incidence),
+        }
+    }
+
+    /// The same for another incidence, if that is a part of it.
+    pub fn lit_by(self, normal: Direction, incoming: Direction) -> Self {
+        match self {
+            Self::Ltc {
+                roughness,
+                share,
+                matrix,
+                ..
+            } => Self::Ltc {
+                roughness,
+                share,
+                matrix,
+                lobe: ltc_lobe(roughness, share, matrix, Incidence { normal, incoming }),
+            },
+            other => other,
+        }
+    }
+
     /// The same with another tangent, if it has one that is nearly parallel to `normal`.
     pub fn laid_on(self, normal: Vector) -> Self {
         match self {
@@ -78,6 +116,29 @@ impl Brdf {
             other => other,
         }
     }
+}
+
+fn ltc_lobe(roughness: f32, share: f32, matrix: Option<[f32; 4]>, incidence: Incidence) -> LtcLobe {
+    if let Some(matrix) = matrix {
+        return LtcLobe::with_matrix(matrix, share, incidence).expect("in range");
+    }
+    let ggx = Ggx::new(roughness).expect("in range");
+    LtcLobe::new(ggx, Schlick::new(share).expect("in range"), incidence)
+}
+
+/// The first and the third row of M⁻¹. The second is the cross product of the third and the first.
+pub fn ltc_rows(lobe: &LtcLobe) -> [Vector; 2] {
+    let columns = lobe.inverse_matrix().transpose();
+    [columns.x_axis, columns.z_axis].map(Vector::from)
+}
+
+/// The value of a transformed cosine without a horizon.
+pub fn ltc_value(lobe: &LtcLobe, outgoing: Vector) -> f64 {
+    let [first, third] = ltc_rows(lobe);
+    let height = third.dot(outgoing);
+    let transformed = [first, third.cross(first), third].map(|row| row.dot(outgoing));
+    let squared = Vector(transformed).dot(Vector(transformed));
+    f64::from(lobe.amplitude()) * height.max(0.0) / (squared * squared)
 }
 
 /// A surface point and the direction its light comes from.
@@ -143,6 +204,7 @@ impl Surface {
             _ if mu_o <= 0.0 => 0.0,
             Brdf::Lambert { albedo } => f64::from(albedo) / PI * mu_o,
             _ if mu <= 0.0 => 0.0,
+            Brdf::Ltc { lobe, .. } => ltc_value(&lobe, outgoing),
             Brdf::Phong { albedo, exponent } => {
                 let [albedo, exponent] = [albedo, exponent].map(f64::from);
                 match self.mirror().dot(outgoing) {

@@ -16,8 +16,8 @@ pub use fresnel::Fresnel;
 pub use frustum::Frustum;
 pub use given::{GivenFresnel, MaskedAlone};
 pub use lobe::{
-    Brdf, Masking, Surface, SurfaceFrame, anisotropic_g2, anisotropic_ndf, ggx_ndf, smith_g1,
-    smith_g2,
+    Brdf, Masking, Surface, SurfaceFrame, anisotropic_g2, anisotropic_ndf, ggx_ndf, ltc_rows,
+    ltc_value, smith_g1, smith_g2,
 };
 pub use shape::Shape;
 pub use smallest::Smallest;

@@ -1,0 +1,381 @@
+//! Fits linearly transformed cosines to GGX lobes with height-correlated masking.
+//!
+//! Light comes from (−√(1−μ²), 0, μ). In the frame of the vector t = (μ, 0, −√(1−μ²)), the bitangent and the
+//! mirror direction u, the matrix is
+//!
+//! M⁻¹ = [[A, 0, αB], [0, 1, 0], [αD, 0, αE]].
+//!
+//! With α taken out, the elements are bounded and hardly change from knot to knot, however narrow the lobe.
+//! A and E are positive, B is not negative and D is not positive, so every mean of such matrices is
+//! invertible.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use argmin::core::{CostFunction, Error, Executor, State};
+use argmin::solver::neldermead::NelderMead;
+use rayon::prelude::*;
+
+#[allow(
+    dead_code,
+    reason = "the crate reads the table, the fit only needs its layout"
+)]
+#[path = "../../src/lobe/ltc_table.rs"]
+mod layout;
+
+use layout::{KNOTS, MATRIX_SCALES};
+
+/// Nodes along each of two coordinates, of each of two sets.
+const NODES_OF_FIT: usize = 24;
+/// The same, for albedos.
+const NODES_OF_ALBEDOS: usize = 64;
+/// Iterations of the minimiser from each start, and from where that ends.
+const ITERATIONS: [u64; 2] = [300, 200];
+/// The least count of A and E, which keeps every matrix invertible.
+const LEAST_COUNT: u16 = 66;
+/// The weight of the squared change of D between knots of α. For narrow lobes the error hardly depends on D.
+const SMOOTHNESS: f64 = 1e-6;
+/// α at the first knots, where the elements are at their limit.
+const LEAST_ALPHA: f64 = 1.6e-5;
+
+/// The weight of the squared skew. Bounds of skewed lobes are loose, and a narrow lobe gains nothing by skew.
+const SKEW: f64 = 4e-3;
+
+/// A, B, D and E.
+pub type Elements = [f64; 4];
+
+/// The bytes of the table.
+pub fn table() -> Vec<u8> {
+    let columns: Vec<_> = (0..KNOTS).into_par_iter().map(column).collect();
+    let matrices = (0..KNOTS).flat_map(|i| columns.iter().map(move |column| column[i]));
+    let albedos: Vec<_> = (0..KNOTS * KNOTS)
+        .into_par_iter()
+        .map(|at| albedo_counts(at / KNOTS, at % KNOTS))
+        .collect();
+    let counts = matrices.flatten().chain(albedos.into_iter().flatten());
+    counts.flat_map(u16::to_le_bytes).collect()
+}
+
+/// The counts of the matrices at a knot of √(1 − μ), for all knots of α. Each fit starts from the one before,
+/// from rough to smooth.
+pub fn column(j: usize) -> Vec<[u16; 4]> {
+    let share = j as f64 / (KNOTS - 1) as f64;
+    let mu = 1.0 - share * share;
+    let mut elements = vec![[0.0; 4]; KNOTS];
+    let mut last = None;
+    for i in (0..KNOTS).rev() {
+        let lobe = Target::new(alpha_at(i), mu);
+        let fit = if j == 0 {
+            lobe.fit_head_on(last.map_or(1.1, |last: Elements| last[3]))
+        } else {
+            lobe.fit(last)
+        };
+        elements[i] = fit;
+        last = Some(fit);
+    }
+    elements.into_iter().map(counts).collect()
+}
+
+/// The counts of n_A and f_A at the knots `i` of √α and `j` of tan(θ/2) + tan(δ/2).
+pub fn albedo_counts(i: usize, j: usize) -> [u16; 2] {
+    let alpha = alpha_at(i);
+    let mu = cosine_at(alpha, 2.0 * j as f64 / (KNOTS - 1) as f64);
+    albedos(alpha, mu).map(|albedo| count(albedo, 0))
+}
+
+fn alpha_at(i: usize) -> f64 {
+    let root = i as f64 / (KNOTS - 1) as f64;
+    (root * root).max(LEAST_ALPHA)
+}
+
+fn counts(elements: Elements) -> [u16; 4] {
+    let [a, b, d, e] = std::array::from_fn(|k| elements[k] / MATRIX_SCALES[k]);
+    [
+        count(a, LEAST_COUNT),
+        count(b, 0),
+        count(d, 0),
+        count(e, LEAST_COUNT),
+    ]
+}
+
+fn count(share: f64, least: u16) -> u16 {
+    ((share * 65535.0).round().clamp(0.0, 65535.0) as u16).max(least)
+}
+
+/// μ where tan(θ/2) + tan(δ/2) is `coordinate`, tanδ = α tanθ.
+fn cosine_at(alpha: f64, coordinate: f64) -> f64 {
+    let coordinate_at = |angle: f64| {
+        let (sine, cosine) = angle.sin_cos();
+        let slope = alpha * sine;
+        (0.5 * angle).tan() + slope / (cosine + cosine.hypot(slope))
+    };
+    let (mut low, mut high) = (0.0, FRAC_PI_2);
+    if coordinate_at(high) <= coordinate {
+        return 0.0;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if coordinate_at(middle) < coordinate {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low.cos()
+}
+
+/// n_A and f_A: the integrals of the GGX lobe for F = 1 and F = (1 − cosθ_h)⁵.
+pub fn albedos(alpha: f64, mu: f64) -> [f64; 2] {
+    let mut sums = [0.0; 2];
+    for node in nodes(alpha, mu, NODES_OF_ALBEDOS) {
+        sums[0] += node.weight * node.value;
+        sums[1] += node.weight * node.value * node.grazing;
+    }
+    sums
+}
+
+/// A direction of a quadrature over the hemisphere, half of it, since the lobe is symmetric.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    pub outgoing: [f64; 3],
+    pub weight: f64,
+    /// The GGX lobe for F = 1.
+    pub value: f64,
+    /// (1 − cosθ_h)⁵
+    pub grazing: f64,
+}
+
+/// Two sets of nodes, which follow the visible normals of this roughness and of a four times larger one, with
+/// the balance heuristic between them [Veach & Guibas 1995; Dupuy & Benyoub 2023].
+pub fn nodes(alpha: f64, mu: f64, count: usize) -> Vec<Node> {
+    let sets = [
+        Facets::new(alpha, mu),
+        Facets::new((4.0 * alpha).min(1.0), mu),
+    ];
+    let each = 1.0 / (count * count) as f64;
+    let mut nodes = Vec::with_capacity(2 * count * count);
+    for set in &sets {
+        for i in 0..count {
+            for j in 0..count {
+                let place = [i, j].map(|i| (i as f64 + 0.5) / count as f64);
+                let half = set.normal(place);
+                let cosine = half[0] * sets[0].incoming[0] + half[2] * sets[0].incoming[2];
+                let outgoing =
+                    std::array::from_fn(|k| 2.0 * cosine * half[k] - sets[0].incoming[k]);
+                if outgoing[2] > 0.0 {
+                    let density = sets[0].density(half) + sets[1].density(half);
+                    nodes.push(Node {
+                        outgoing,
+                        weight: each / density,
+                        value: sets[0].value(half, outgoing[2]),
+                        grazing: (1.0 - cosine).max(0.0).powi(5),
+                    });
+                }
+            }
+        }
+    }
+    nodes
+}
+
+/// A GGX microsurface and the direction that light comes from.
+struct Facets {
+    alpha: f64,
+    incoming: [f64; 3],
+    /// The incoming direction on the surface stretched to α = 1.
+    stretched: [f64; 3],
+    /// √((1−α²)μ² + α²)
+    root: f64,
+}
+
+impl Facets {
+    fn new(alpha: f64, mu: f64) -> Self {
+        let sine = (1.0 - mu * mu).max(0.0).sqrt();
+        let length = (alpha * sine).hypot(mu);
+        Self {
+            alpha,
+            incoming: [-sine, 0.0, mu],
+            stretched: [-alpha * sine / length, 0.0, mu / length],
+            root: ((1.0 - alpha * alpha) * mu * mu + alpha * alpha).sqrt(),
+        }
+    }
+
+    /// A visible normal. The first coordinate is denser where normals are far from the peak.
+    fn normal(&self, [rare, azimuth]: [f64; 2]) -> [f64; 3] {
+        let [x, _, z] = self.stretched;
+        let height = rare.powi(3) * (1.0 + z) - z;
+        let radius = (1.0 - height * height).max(0.0).sqrt();
+        let (sine, cosine) = (PI * azimuth).sin_cos();
+        let facet = [
+            self.alpha * (radius * cosine + x),
+            self.alpha * radius * sine,
+            (height + z).max(0.0),
+        ];
+        let length = facet.iter().map(|x| x * x).sum::<f64>().sqrt();
+        facet.map(|x| x / length)
+    }
+
+    /// D
+    fn ndf(&self, [x, y, z]: [f64; 3]) -> f64 {
+        let squared = self.alpha * self.alpha;
+        let spread = squared * z * z + x * x + y * y;
+        squared / (PI * spread * spread)
+    }
+
+    /// The density of directions that these normals reflect to.
+    fn density(&self, half: [f64; 3]) -> f64 {
+        let facet = [half[0] / self.alpha, half[1] / self.alpha, half[2]];
+        let squared: f64 = facet.iter().map(|x| x * x).sum();
+        let dot = facet[0] * self.stretched[0] + facet[2] * self.stretched[2];
+        let rare_cubed = 2.0 * dot * facet[2] / squared / (1.0 + self.stretched[2]);
+        let visible = self.ndf(half) * 0.5 / (self.incoming[2] + self.root);
+        visible / (3.0 * rare_cubed.max(1e-300).powf(2.0 / 3.0))
+    }
+
+    /// f·μ_o for F = 1.
+    fn value(&self, half: [f64; 3], mu_o: f64) -> f64 {
+        let (alpha, mu) = (self.alpha, self.incoming[2]);
+        let root = ((1.0 - alpha * alpha) * mu_o * mu_o + alpha * alpha).sqrt();
+        self.ndf(half) * 0.5 * mu_o / (mu_o * self.root + mu * root)
+    }
+}
+
+/// The lobe that is to be fitted.
+struct Target {
+    alpha: f64,
+    mu: f64,
+    nodes: Vec<Node>,
+    /// The integral of the lobe.
+    albedo: f64,
+    /// The integral of its square.
+    square: f64,
+}
+
+impl Target {
+    fn new(alpha: f64, mu: f64) -> Self {
+        let nodes = nodes(alpha, mu, NODES_OF_FIT);
+        let square = nodes
+            .iter()
+            .map(|node| node.weight * node.value * node.value)
+            .sum();
+        Self {
+            alpha,
+            mu,
+            albedo: albedos(alpha, mu)[0],
+            square,
+            nodes,
+        }
+    }
+
+    /// The squared sine of the angle between the third row and the axis of the lobe, where the first two
+    /// components of M⁻¹ω vanish.
+    fn squared_skew(&self, [a, b, d, e]: Elements) -> f64 {
+        let b = self.alpha * b;
+        let (along, across) = (a * e - b * d, a * d + b * e);
+        (across / along.hypot(across)).powi(2)
+    }
+
+    /// The squared relative L2 error of a lobe with the energy of the target.
+    fn error(&self, [a, b, d, e]: Elements) -> f64 {
+        let (alpha, mu) = (self.alpha, self.mu);
+        let sine = (1.0 - mu * mu).max(0.0).sqrt();
+        // Rows 1 and 3 along x and z.
+        let row = |along: f64, up: f64| [along * mu + up * sine, up * mu - along * sine];
+        let (first, third) = (row(a, alpha * b), row(alpha * d, alpha * e));
+        let determinant = alpha * (a * e - alpha * b * d);
+        // The direction of Mᵀn, whose third component gives the share above the horizon.
+        let (up, along) = (a * mu + alpha * b * sine, alpha * (e * sine + d * mu));
+        let above = 0.5 * (1.0 + up / up.hypot(along));
+        let factor = self.albedo * determinant / (PI * above);
+        let mut sum = 0.0;
+        for node in &self.nodes {
+            let [x, y, z] = node.outgoing;
+            let height = third[0] * x + third[1] * z;
+            let side = first[0] * x + first[1] * z;
+            let squared = side * side + y * y + height * height;
+            let gap = factor * height.max(0.0) / (squared * squared) - node.value;
+            sum += node.weight * gap * gap;
+        }
+        sum / self.square
+    }
+
+    /// At normal incidence, where the matrix is diagonal with two equal elements.
+    fn fit_head_on(&self, start: f64) -> Elements {
+        let cost = |x: &[f64]| self.penalised([1.0, 0.0, 0.0, x[0]]);
+        let e = minimum(&cost, vec![vec![start], vec![0.9 * start]], ITERATIONS[0])[0];
+        [1.0, 0.0, 0.0, e]
+    }
+
+    /// From the fit for the next rougher surface, or, for α = 1, the best from several starts.
+    fn fit(&self, rougher: Option<Elements>) -> Elements {
+        let cosine = self.mu.max(0.05);
+        let starts = match rougher {
+            Some(rougher) => vec![rougher],
+            None => vec![
+                [1.0, 0.01, -1.2, 1.0],
+                [0.7 * cosine, 0.5, -1.2, 1.2 * cosine],
+                [cosine, 0.3, -0.6, 1.2 * cosine],
+                [0.05, 1.0, -1.5, 0.05],
+            ],
+        };
+        let cost = |x: &[f64]| {
+            let elements = [x[0], x[1], x[2], x[3]];
+            let change = rougher.map_or(0.0, |rougher| x[2] - rougher[2]);
+            self.penalised(elements) + SMOOTHNESS * change * change
+        };
+        let best = starts.into_iter().map(|start| {
+            let mut found = start.to_vec();
+            for (iterations, size) in ITERATIONS.into_iter().zip([0.1, 0.03]) {
+                let mut simplex = vec![found.clone(); 5];
+                for (k, corner) in simplex[1..].iter_mut().enumerate() {
+                    let step = [-found[0], 0.5, -1.0, found[3]][k];
+                    corner[k] += size * step;
+                }
+                found = minimum(&cost, simplex, iterations);
+            }
+            let error = cost(&found);
+            (clamped([found[0], found[1], found[2], found[3]]).0, error)
+        });
+        let best = best.min_by(|a, b| a.1.total_cmp(&b.1));
+        best.expect("there is a start").0
+    }
+
+    /// The error of the nearest elements in range, and their squared distance.
+    fn penalised(&self, elements: Elements) -> f64 {
+        let (clamped, excess) = clamped(elements);
+        self.error(clamped) + excess + SKEW * self.squared_skew(clamped)
+    }
+}
+
+/// The nearest elements that the table can hold, and the squared distance to them.
+fn clamped(elements: Elements) -> (Elements, f64) {
+    let least = f64::from(LEAST_COUNT) / 65535.0;
+    let mut excess = 0.0;
+    let clamped = std::array::from_fn(|k| {
+        let share = elements[k] / MATRIX_SCALES[k];
+        let least = if k == 0 || k == 3 { least } else { 0.0 };
+        let inside = share.clamp(least, 1.0);
+        excess += (share - inside).powi(2);
+        inside * MATRIX_SCALES[k]
+    });
+    (clamped, excess)
+}
+
+struct Cost<'a>(&'a dyn Fn(&[f64]) -> f64);
+
+impl CostFunction for Cost<'_> {
+    type Param = Vec<f64>;
+    type Output = f64;
+
+    fn cost(&self, x: &Vec<f64>) -> Result<f64, Error> {
+        Ok((self.0)(x))
+    }
+}
+
+/// Where `cost` is least, by the method of [Nelder & Mead 1965].
+fn minimum(cost: &dyn Fn(&[f64]) -> f64, simplex: Vec<Vec<f64>>, iterations: u64) -> Vec<f64> {
+    let start = simplex[0].clone();
+    let executor = Executor::new(Cost(cost), NelderMead::new(simplex))
+        .configure(|state| state.max_iters(iterations))
+        .timer(false);
+    let result = executor.run().expect("the cost is a number everywhere");
+    result.state().get_best_param().cloned().unwrap_or(start)
+}
