@@ -4,91 +4,16 @@
 use proptest::prelude::*;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BoundStrategy, Bounded, BoxTest, Camera,
-    Conductor, ConstantLobe, Dielectric, Direction, Ellipsoid, Focal, Fresnel, Ggx, GgxLobe,
-    Incidence, LambertLobe, LightBatch, Lobe, LtcLobe, MaskingShadowing, NoFresnel, OwnBound,
-    Paper, PhongLobe, Project, ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Seed,
-    Sphere, SphericalGaussian, Spheroid, SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    ConstantLobe, Dielectric, Direction, Ellipsoid, Focal, Fresnel, Ggx, GgxLobe, LambertLobe,
+    LightBatch, Lobe, LtcLobe, MaskingShadowing, NoFresnel, OwnBound, Paper, PhongLobe, Project,
+    ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Seed, Sphere, SphericalGaussian,
+    Spheroid, SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
-use support::generators::{self, Lit, cases, log_uniform};
-
-/// What a light is made of, whatever its lobe.
-#[derive(Clone, Copy, Debug)]
-struct Parts {
-    position: Vec3,
-    flux: f32,
-    xi: Xi,
-    lit: Lit,
-    roughness: f32,
-    /// An albedo, or a reflectance.
-    share: f32,
-}
-
-impl Parts {
-    fn vpl<L: Lobe>(&self, lobe: L) -> (Vpl<L>, Xi) {
-        (Vpl::new(self.position, self.flux, lobe).unwrap(), self.xi)
-    }
-
-    fn incidence(&self) -> Incidence {
-        let Lit {
-            normal, incoming, ..
-        } = self.lit;
-        Incidence { normal, incoming }
-    }
-
-    fn ggx<F: Fresnel>(&self, fresnel: F) -> GgxLobe<F> {
-        GgxLobe::new(Ggx::new(self.roughness).unwrap(), fresnel, self.incidence())
-    }
-
-    fn conductor(&self) -> Conductor {
-        Conductor::new(0.1 + self.share, 3.0).unwrap()
-    }
-}
-
-/// Often ordinary, now and then out of all bounds: dark, blinding, lit from behind, and narrow.
-fn parts() -> impl Strategy<Value = Parts> {
-    let position = prop_oneof![
-        20 => generators::position(),
-        1 => Just(Vec3::splat(3e38)),
-    ];
-    let flux = prop_oneof![
-        20 => log_uniform(1e-6, 1e6).prop_map(|x| x as f32),
-        1 => Just(0.0),
-        1 => Just(f32::from_bits(1)),
-        1 => Just(1e-40),
-        1 => Just(f32::MAX),
-    ];
-    let xi = prop_oneof![
-        20 => log_uniform(2.3e-10, 1.0).prop_map(|x| x as f32),
-        2 => log_uniform(1e-45, 2.3e-10).prop_map(|x| x as f32),
-        1 => Just(1.0),
-        1 => Just(f32::from_bits(1)),
-    ];
-    let lit = prop_oneof![
-        20 => generators::lit(),
-        1 => generators::lit().prop_map(|lit| Lit { incoming: -lit.incoming, ..lit }),
-        1 => generators::lit().prop_map(|lit| Lit { incoming: lit.normal, ..lit }),
-    ];
-    let roughness = prop_oneof![
-        20 => generators::roughness(),
-        1 => Just(Ggx::MIN_ROUGHNESS),
-    ];
-    let share = prop_oneof![
-        20 => 0.0..=1.0_f32,
-        1 => Just(0.0),
-        1 => Just(1.0),
-        1 => Just(f32::from_bits(1)),
-    ];
-    (position, flux, xi, lit, roughness, share).prop_map(
-        |(position, flux, xi, lit, roughness, share)| Parts {
-            position,
-            flux,
-            xi: Xi::new(xi).unwrap(),
-            lit,
-            roughness,
-            share,
-        },
-    )
-}
+use support::{
+    generators::{self, cases, log_uniform},
+    parts::{Coat, Parts, Windowed, parts},
+    reference::MaskedAlone,
+};
 
 #[derive(Clone, Debug)]
 struct Frame {
@@ -216,45 +141,6 @@ impl Frame {
                 placed.map(|((index, light), bound)| (index, bound, light.position, scale(light)));
             builder.add_placed(placed, batch);
         })
-    }
-}
-
-/// A lobe that the crate does not know: a cosine within a window.
-#[derive(Clone, Copy)]
-struct Windowed(Direction);
-
-impl Lobe for Windowed {
-    fn value(&self, outgoing: Vec3) -> f32 {
-        let cosine = self.0.dot(outgoing);
-        if cosine > 0.5 { cosine } else { 0.0 }
-    }
-}
-
-impl Bounded for Windowed {
-    type Shape = Sphere;
-    type Strategy = OwnBound;
-
-    fn unit_bound(&self) -> Sphere {
-        Sphere::new(*self.0 * 0.5, 0.9).unwrap()
-    }
-}
-
-/// A Fresnel factor and a masking function of a caller's own.
-#[derive(Clone, Copy)]
-struct Coat(f32);
-
-impl Fresnel for Coat {
-    fn reflectance(&self, half_angle_cosine: f32) -> f32 {
-        self.0.max(0.04 + 0.96 * (1.0 - half_angle_cosine).powi(5))
-    }
-}
-
-#[derive(Clone, Copy)]
-struct MaskedAlone;
-
-impl MaskingShadowing for MaskedAlone {
-    fn over_four_incident_cosines(cosine: f32, root: f32, _: f32, _: f32) -> f32 {
-        0.5 / (cosine + root)
     }
 }
 

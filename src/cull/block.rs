@@ -22,6 +22,16 @@ pub(super) struct Scene<'a, P: BoxTest> {
 pub(super) struct Output<'a> {
     pub lists: &'a mut LightLists,
     pub window: Window,
+    pub numbers: Numbers,
+}
+
+/// What lists hold for each light.
+#[derive(Clone, Copy)]
+pub(super) enum Numbers {
+    /// Its index, for the caller.
+    Lights,
+    /// Its place, for the exact test.
+    Places,
 }
 
 /// Upper limit of the tiles of a block, in each direction.
@@ -66,7 +76,6 @@ impl<P: BoxTest> Scratch<P> {
 
     /// Has the exact test follow the box test.
     pub fn test_exactly(&mut self) {
-        self.tile_lists.lists_places = true;
         self.exact = Some(ExactLists::default());
     }
 

@@ -3,7 +3,7 @@ use alloc::vec::Vec;
 use fearless_simd::{Level, dispatch};
 
 use super::bins::{Bins, Blocks};
-use super::block::{BLOCK, By, Output, Scene, Scratch};
+use super::block::{BLOCK, By, Numbers, Output, Scene, Scratch};
 use super::lists::Window;
 use super::{LightBatch, LightLists, TileDepths};
 use crate::base::Error;
@@ -213,6 +213,7 @@ impl<P: BoxTest> Culler<P> {
         let mut output = Output {
             lists,
             window: Window::all(all.size()[0]),
+            numbers: Numbers::Lights,
         };
         let Self {
             places,

@@ -8,7 +8,7 @@ use core::ops::Range;
 use fearless_simd::{Simd, SimdBase, SimdMask};
 
 use super::batch::grow;
-use super::block::{Output, Scene};
+use super::block::{Numbers, Output, Scene};
 use super::lanes::{
     LANES, Record, load_lines, load_records, mask_of_first, numbers_from, write_chosen,
 };
@@ -43,6 +43,7 @@ impl ExactLists {
         Output {
             lists: &mut self.pairs,
             window: Window::of(area, 0),
+            numbers: Numbers::Places,
         }
     }
 

@@ -8,7 +8,7 @@ use fearless_simd::{Level, dispatch};
 use rayon::prelude::*;
 
 use super::bins::{Bins, Blocks};
-use super::block::{BLOCK, By, Output, Scene, Scratch};
+use super::block::{BLOCK, By, Numbers, Output, Scene, Scratch};
 use super::culler::finish;
 use super::lists::Window;
 use super::{CullCounters, Culler, LightBatch, LightLists, TileDepths};
@@ -156,6 +156,7 @@ impl<P: BoxTest> Worker<P> {
             let mut output = Output {
                 lists,
                 window: Window::of(*area, first),
+                numbers: Numbers::Lights,
             };
             let places = &self.places;
             dispatch!(level, simd => scratch.cull(simd, scene, places, *area, By::BoundsAndBoxes, &mut output));

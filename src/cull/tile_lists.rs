@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use fearless_simd::{Simd, SimdBase, SimdMask};
 
 use super::batch::grow;
-use super::block::{Output, Scene};
+use super::block::{Numbers, Output, Scene};
 use super::lanes::{
     LANES, Lanes, Record, load, load_indices, parts, splat, splat_bounds, store, write_chosen,
 };
@@ -49,8 +49,6 @@ impl<P: Projected> Chunk<P> {
 pub(super) struct TileLists<P: BoxTest> {
     chunks: Vec<Chunk<P>>,
     writer: ListWriter,
-    /// Whether lists hold the places of lights, for the exact test, in place of their indices.
-    pub lists_places: bool,
 }
 
 impl<P: BoxTest> TileLists<P> {
@@ -62,7 +60,6 @@ impl<P: BoxTest> TileLists<P> {
                 lists: Vec::new(),
                 lens: Vec::new(),
             },
-            lists_places: false,
         }
     }
 
@@ -88,7 +85,7 @@ impl<P: BoxTest> TileLists<P> {
         }
         simd.vectorize(
             #[inline(always)]
-            || self.gather(simd, scene, places),
+            || self.gather(simd, scene, places, output.numbers),
         );
         let chunks = &self.chunks[..places.len().div_ceil(LANES)];
         let writer = &mut self.writer;
@@ -100,7 +97,7 @@ impl<P: BoxTest> TileLists<P> {
 
     /// Lays the lights at `places` side by side in chunks.
     #[inline(always)]
-    fn gather<S: Simd>(&mut self, simd: S, scene: &Scene<P>, places: &[u32]) {
+    fn gather<S: Simd>(&mut self, simd: S, scene: &Scene<P>, places: &[u32], numbers: Numbers) {
         grow(
             &mut self.chunks,
             places.len().div_ceil(LANES),
@@ -114,10 +111,9 @@ impl<P: BoxTest> TileLists<P> {
                     store(lanes, part, *vector);
                 }
             }
-            chunk.numbers = if self.lists_places {
-                places.0
-            } else {
-                places.lights(scene.batch)
+            chunk.numbers = match numbers {
+                Numbers::Lights => places.lights(scene.batch),
+                Numbers::Places => places.0,
             };
         }
     }

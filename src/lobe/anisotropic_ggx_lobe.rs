@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::anisotropic_ggx::{anisotropic_masking_root, anisotropic_ndf};
-use super::ggx_lobe::{GgxLobes, reflectance};
+use super::ggx_lobes::{GgxLobes, reflectance};
 use super::{
     AnisotropicGgx, FIRST_NUMBERS, Fresnel, GgxLobe, HeightCorrelated, Incidence, Lobe,
     LobeNumbers, MaskingShadowing, NoFresnel, Separable,

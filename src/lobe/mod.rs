@@ -9,6 +9,7 @@ mod dielectric;
 mod fresnel;
 mod ggx;
 mod ggx_lobe;
+mod ggx_lobes;
 mod incidence;
 mod lambert;
 #[cfg(all(test, feature = "cull"))]
@@ -33,7 +34,7 @@ pub use dielectric::Dielectric;
 pub use fresnel::{Fresnel, FresnelMajorant, NoFresnel, Schlick};
 pub use ggx::Ggx;
 pub use ggx_lobe::GgxLobe;
-pub(crate) use ggx_lobe::{GgxLobes, PlaneOfIncidence};
+pub(crate) use ggx_lobes::{GgxLobes, PlaneOfIncidence};
 pub use incidence::Incidence;
 pub use lambert::LambertLobe;
 #[cfg(feature = "ltc")]

@@ -4,11 +4,9 @@ use std::hint::black_box;
 
 use fastrand::Rng;
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Bounded, Camera, ClusterSums,
-    Conductor, ConstantLobe, DepthInterval, Dielectric, Direction, DistanceWindow, Ellipsoid,
-    Fresnel, FresnelMajorant, Ggx, GgxLobe, Incidence, Interleave, LambertLobe, Lobe, LtcLobe,
-    NoFresnel, Paper, PhongLobe, PixelRectangle, Proxy, Roulette, Schlick, Seed, Sphere,
-    SphericalGaussian, SpotLobe, Tight, TileGrid, TileRectangle, Triaxial, Vpl, Vsgl, Xi,
+    AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, Dielectric, Direction, Ellipsoid, Ggx,
+    GgxLobe, Incidence, Interleave, LambertLobe, LtcLobe, NoFresnel, PhongLobe, PixelRectangle,
+    Roulette, Schlick, Sphere, SphericalGaussian, SpotLobe, TileGrid, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
 use support::adversary::{Light, Tile};
@@ -16,6 +14,7 @@ use support::reference::{self, Brdf, Masking, Vector};
 
 use crate::bits::Bits;
 use crate::culling;
+use crate::other_lobes;
 use crate::probe::{self, Probed};
 
 pub fn everything(bits: &mut Bits) {
@@ -29,12 +28,12 @@ pub fn everything(bits: &mut Bits) {
         2 => fresnel(bits),
         3 => sizes(bits),
         4 => culling::everything(bits, &cameras),
-        5 => foreign(bits, &cameras),
-        _ => others(bits, &cameras),
+        5 => other_lobes::foreign(bits, &cameras),
+        _ => other_lobes::others(bits, &cameras),
     }
 }
 
-fn directions(bits: &mut Bits) -> Option<[Direction; 2]> {
+pub fn directions(bits: &mut Bits) -> Option<[Direction; 2]> {
     let [a, b] = [(); 2].map(|()| Direction::new(bits.vector()).ok());
     let directions = [a?, b?];
     let _ = directions.map(probe::direction);
@@ -129,187 +128,6 @@ fn sizes(bits: &mut Bits) {
         black_box(interleave.lights_in(subregion, light));
         let [min, max] = [(); 2].map(|()| [bits.size(), bits.size()]);
         black_box(interleave.join_pixels(bits.size(), PixelRectangle { min, max }));
-    }
-}
-
-fn others(bits: &mut Bits, cameras: &[Camera]) {
-    if let Some([normal, _]) = directions(bits) {
-        if let Ok(lobe) = LambertLobe::new(bits.number(), normal) {
-            probe::lambert_lobe(&lobe, cameras);
-        }
-    }
-    if let Some([normal, incoming]) = directions(bits) {
-        let [albedo, exponent] = [(); 2].map(|()| bits.number());
-        for lobe in [
-            PhongLobe::new(albedo, exponent, Incidence { normal, incoming }),
-            PhongLobe::about(albedo, exponent, normal),
-        ]
-        .into_iter()
-        .flatten()
-        {
-            probe::direction(lobe.axis());
-            probe::saved(&lobe);
-            probe::light(lobe, cameras);
-        }
-    }
-    if let Some([axis, _]) = directions(bits) {
-        if let Ok(lobe) = SpotLobe::new(bits.number(), bits.number(), axis) {
-            probe::saved(&lobe);
-            for lobe in [lobe, lobe.hard_edged(), lobe.with_axis(-axis)] {
-                assert!((0.0..=1.0).contains(&lobe.emitted_share()));
-                probe::light(lobe, cameras);
-            }
-        }
-        if let Ok(window) = DistanceWindow::new(bits.number()) {
-            probe::saved(&window);
-            let scale = bits.number();
-            assert!((0.0..=1.0).contains(&window.factor(bits.number().abs())));
-            assert!(scale.is_nan() || window.limit(SpotLobe::PEAK, scale) <= scale);
-        }
-        let _ = (Vpl::point(bits.vector(), bits.number()), bits.number());
-    }
-    gaussians(bits, cameras);
-    if let (Ok(roulette), Ok(xi)) = (Roulette::new(bits.number()), Xi::new(bits.number())) {
-        probe::roulette(&roulette, xi);
-        let seed = Seed(bits.word()).subregion(bits.word());
-        let (frame, light) = (seed.frame(bits.word()), bits.word());
-        for xi in [
-            frame.xi(light),
-            frame.xi_of_rank(light),
-            frame.hashed_xi(light),
-        ] {
-            probe::roulette(&roulette, xi);
-        }
-    }
-    if let Ok(light) = Vpl::new(bits.vector(), bits.number(), ConstantLobe) {
-        assert!(!light.radiant_intensity(Vec3::Z).is_nan());
-        probe::light(ConstantLobe, cameras);
-    }
-    black_box(TileRectangle::new(bits.pair(), bits.pair()).is_ok());
-    let depths = [(); 5].map(|()| bits.number());
-    if let Ok(interval) = DepthInterval::new(depths[0], depths[1]) {
-        for slice in interval.exponential_slices(bits.byte().into()) {
-            assert!(slice.near() <= slice.far() && slice.far() <= interval.far());
-        }
-        black_box(interval.exponential_slices(u32::MAX).next());
-    }
-    for interval in DepthInterval::modified_half_z(depths).into_iter().flatten() {
-        assert!(0.0 <= interval.near() && interval.near() <= interval.far());
-    }
-    black_box(DepthInterval::half_z(depths));
-}
-
-fn gaussians(bits: &mut Bits, cameras: &[Camera]) {
-    let Some([axis, other]) = directions(bits) else {
-        return;
-    };
-    let [sharpness, amplitude] = [(); 2].map(|()| bits.number());
-    let mean = [(); 3].map(|()| bits.number().into());
-    let incidence = Incidence {
-        normal: axis,
-        incoming: other,
-    };
-    let ggx = AnisotropicGgx::new(bits.number(), bits.number());
-    let anisotropic = [
-        AnisotropicSphericalGaussian::new(axis, other, [bits.number(), bits.number()], amplitude),
-        ggx.and_then(|ggx| AnisotropicSphericalGaussian::specular(ggx, incidence, other)),
-    ];
-    let lobes = [
-        SphericalGaussian::new(axis, sharpness, amplitude),
-        SphericalGaussian::with_integral(other, bits.number(), amplitude),
-        SphericalGaussian::from_mean_direction(mean, amplitude),
-        SphericalGaussian::diffuse(amplitude, axis),
-        Ggx::new(bits.number())
-            .and_then(|ggx| SphericalGaussian::specular(ggx, amplitude, incidence)),
-    ];
-    for lobe in lobes.into_iter().flatten() {
-        probe::direction(lobe.sample([bits.number(), bits.number()]));
-        assert!(!lobe.density(bits.vector()).is_nan());
-        for other in lobes.into_iter().flatten() {
-            let product = lobe.product(&other);
-            assert!(product.sharpness() <= SphericalGaussian::MAX_SHARPNESS);
-            assert!(product.amplitude().is_finite() && product.integral() >= 0.0);
-            probe::direction(product.axis());
-        }
-        for other in anisotropic.into_iter().flatten() {
-            assert!(other.product_integral(&lobe) >= 0.0);
-            assert!(other.value(bits.vector()) >= 0.0);
-            assert!(other.scaled(bits.number()).amplitude() >= 0.0);
-        }
-        assert!((0.0..=1.0).contains(&lobe.share_above(other)));
-        if let Ok(ggx) = Ggx::new(bits.number()) {
-            let seen = GgxLobe::new(ggx, NoFresnel, incidence);
-            assert!(seen.product_integral(&lobe) >= 0.0);
-            assert!(seen.product_integral_by_asg(&lobe) >= 0.0);
-        }
-        if let Ok(light) = Vsgl::new(bits.vector(), bits.number(), lobe) {
-            let point = bits.vector();
-            assert!(light.scalar_irradiance(point) >= 0.0);
-            probe::direction(light.incoming(point).axis());
-            assert!(light.incoming(point).integral() >= 0.0);
-        }
-        let sums = ClusterSums::of_light(
-            bits.vector(),
-            bits.number(),
-            &lobe,
-            &lobes[0].unwrap_or(lobe),
-        );
-        if let Ok(sums) = sums {
-            let light = (sums.scaled(bits.number()) + sums).glossy();
-            assert!(light.lobe().integral() >= 0.0 && light.spread() >= 0.0);
-            probe::direction(light.lobe().axis());
-            assert!(light.position().is_finite());
-        }
-        probe::saved(&lobe);
-        probe::light(lobe, cameras);
-    }
-}
-
-/// A Fresnel factor that keeps no promise, and places that are none: what they come to
-/// means nothing, but nothing panics.
-fn foreign(bits: &mut Bits, cameras: &[Camera]) {
-    #[derive(Clone, Copy, Debug)]
-    struct Wild([f32; 5]);
-    impl Fresnel for Wild {
-        fn reflectance(&self, half_angle_cosine: f32) -> f32 {
-            if half_angle_cosine < self.0[0] {
-                self.0[1]
-            } else {
-                self.0[2]
-            }
-        }
-        fn majorant(&self) -> FresnelMajorant {
-            let [.., base, rise] = self.0;
-            FresnelMajorant { base, rise }
-        }
-    }
-    let wild = Wild([(); 5].map(|()| bits.number()));
-    let (Ok(ggx), Some([normal, incoming])) = (Ggx::new(bits.number()), directions(bits)) else {
-        return;
-    };
-    let lobe = GgxLobe::new(ggx, wild, Incidence { normal, incoming });
-    black_box((
-        lobe.value(*normal),
-        lobe.extent(incoming),
-        lobe.max_reflected(),
-    ));
-    let (place, scale) = (bits.vector(), bits.number());
-    let placed = lobe.unit_bound_by(Paper).placed(place, scale);
-    black_box((placed.enclosing_sphere(), placed.sphere_at_focus()));
-    let bounds = [
-        lobe.unit_bound_by(Tight),
-        lobe.unit_bound_by(Triaxial),
-        placed.into(),
-    ];
-    for bound in bounds.map(|bound| bound.placed(place, scale)) {
-        black_box(Proxy::Icosphere.vertices(&bound).last());
-        for stretch in cameras.iter().filter_map(|camera| bound.project(camera)) {
-            let tile = TileRectangle::new(bits.pair(), bits.pair());
-            let depths = DepthInterval::new(bits.number(), bits.number());
-            if let (Ok(tile), Ok(depths)) = (tile, depths) {
-                black_box(stretch.touches_exactly(&tile, &depths));
-            }
-        }
     }
 }
 

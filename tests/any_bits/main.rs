@@ -7,6 +7,7 @@ mod construct;
 mod culling;
 mod fields;
 mod findings;
+mod other_lobes;
 mod probe;
 
 use bits::Bits;

@@ -23,7 +23,7 @@ impl PointBlock {
     /// The most points that a block holds.
     pub const LEN: usize = LANES;
 
-    /// Takes the next [`LEN`](Self::LEN) points, or what is left of them. `None` if there are no more.
+    /// Takes up to [`LEN`](Self::LEN) points from the iterator. `None` if it has none.
     ///
     /// ```
     /// use stochastic_light_culling::{PointBlock, glam::Vec3};

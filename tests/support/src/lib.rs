@@ -13,6 +13,7 @@ pub mod certificate;
 pub mod command;
 pub mod direct_port;
 pub mod generators;
+pub mod parts;
 pub mod quadrature;
 pub mod reference;
 pub mod tightness;

@@ -1,10 +1,12 @@
 //! Points that a light reaches, exactly, and the thinnest tiles around them: drawn from the whole
 //! domain, most often from its edges.
 
+mod draw;
 mod light;
 mod tile;
 
-pub use light::{Light, fresnel};
+pub use draw::fresnel;
+pub use light::Light;
 pub use tile::Tile;
 
 use fastrand::Rng;
