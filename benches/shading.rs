@@ -10,6 +10,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use fearless_simd::{Level, dispatch};
 use stochastic_light_culling::{
     Conductor, Dielectric, Direction, Estimate, Fresnel, Ggx, GgxLobe, Incidence, LambertLobe,
     Lobe, LtcLobe, NoFresnel, PointBlock, RadianceEstimator, Roulette, Schlick, Seed, ShadedPoint,
@@ -111,7 +112,14 @@ impl<L: Lobe + Copy> Scene<L> {
         self.tiles.iter().map(pairs).sum()
     }
 
+    /// One light at a time, compiled for this processor.
     fn scalar(&self, facing: impl Fn(&L, Vec3) -> bool) -> Vec3 {
+        // What is inlined here may take all instructions of the processor.
+        dispatch!(Level::new(), _simd => self.scalar_here(&facing))
+    }
+
+    #[inline(always)]
+    fn scalar_here(&self, facing: &impl Fn(&L, Vec3) -> bool) -> Vec3 {
         let mut total = Vec3::ZERO;
         for tile in &self.tiles {
             for point in &tile.points {
