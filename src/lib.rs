@@ -77,7 +77,8 @@
 //!
 //! # Conventions
 //!
-//! - `f32` and the types of [`glam`]. Vectors are columns.
+//! - `f32` and the types of [`glam`]. Vectors are columns. Version 0.1 of this crate has the types of glam 0.33,
+//!   as Bevy 0.20 does, and version 0.2 those of glam 0.34. They differ in nothing else.
 //! - Directions point away from the surface. A [`Direction`] has unit length to within rounding; where a
 //!   function takes a direction as a `Vec3`, it must have unit length to 10⁻⁴.
 //! - Camera space has x to the right, y up and z = depth, positive ahead, for an engine's view space of
@@ -242,6 +243,7 @@ pub use project::{
 pub use touch::{BoxTest, TileTest};
 pub use view::{Camera, DepthInterval, Interleave, PixelRectangle, TileGrid, TileRectangle};
 
+/// The vectors and matrices of the interface.
 pub use glam;
 
 /// Compiles and runs the programs of the README.
