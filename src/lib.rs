@@ -125,10 +125,10 @@
 //! Outside these ranges a bound is only larger, up to the whole view. The radius of a projected sphere is at
 //! least 10⁻¹⁸, and the semi-axes of a projected ellipsoid are at least 10⁻³⁰.
 //!
-//! Two parts rest on more than counted roundings. The quasi-convexity of F of a [`Conductor`] is not proved;
-//! a search supports it. The ellipsoids of the table behind [`Tight`], between whose knots it interpolates,
-//! are proved to enclose by a computer, box by box: `examples/tabulate -- --prove`. The ellipsoid of a
-//! [`SphericalGaussian`] is proved likewise, by a test.
+//! F of a [`Dielectric`] and of a [`Conductor`] is largest at an end of a range of angles, which is proved for
+//! all of their indices. Two bounds rest on more than proofs by hand and counted roundings. The ellipsoids of
+//! the table behind [`Tight`], between whose knots it interpolates, are proved to enclose by a computer, box by
+//! box: `examples/tabulate -- --prove`. The ellipsoid of a [`SphericalGaussian`] is proved likewise, by a test.
 //!
 //! The cost: at α ≥ 0.01 and ranges of at least 10⁻³ of the distance to the eye and to the origin, the
 //! volume of ellipsoids grows by less than 0.1 % on average; at α = 10⁻⁶ by a large factor.

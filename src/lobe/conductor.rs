@@ -1,3 +1,34 @@
+//! The Fresnel factor of a conductor, and the proof that it is quasi-convex.
+//!
+//! # The reflectance as a quotient
+//!
+//! Let c and s be cosine and sine of the angle θ, x = c², w = a + ib and m = |w|². For κ > 0, a is positive.
+//! The two polarisations reflect ((m + c²) − 2ac)/((m + c²) + 2ac), and that times (q − 2acs²)/(q + 2acs²) with
+//! q = c²m + s⁴. Their mean is
+//!
+//! F = (m + c² − 2ac) q/((m + c² + 2ac)(q + 2acs²)).
+//!
+//! # It is quasi-convex
+//!
+//! w² is x plus a constant, so dw/dx = 1/(2w), and hence da/dx = a/(2m) and db/dx = −b/(2m). Two identities
+//! follow, in which all is a polynomial in c, a and b:
+//!
+//! dF/dx = −F · 2as²K/(mc q(q + 2acs²)), K = q(1 + ½(m − c²) + 2ac) + c²m(2 − c² − m) − 2a²c⁴,
+//!
+//! **mc² dK/dx = (1 + m − 2ac)K − (3 + 2s²)b²c² − ½s²(1 + m + s²)(c²m + s² + s²m)**.
+//!
+//! Let 0 < x < 1. In the second, 1 + m − 2ac ≥ (1 − a)² is not negative, and the last term is. So K falls
+//! wherever it is not positive: once it is zero it is negative for all larger x. By the first, F falls with x
+//! while K is positive, and rises then. So F falls, then rises, or does only one of both.
+//!
+//! `tests/quasi_convex.rs` checks both identities with exact integers.
+//!
+//! # Without extinction
+//!
+//! For κ = 0 and w² > 0 all of this holds, with b = 0. Where w² ≤ 0, at the smallest x, F is 1: the reflection
+//! is total. For η = 1 F is 0 for every x > 0. At x = 1 K is −½η²(η² − 4η + 1). For 2 − √3 ≤ η ≤ 2 + √3 that is
+//! not negative, so K is positive for all smaller x, and F rises with θ at all angles.
+
 use super::dielectric::index_squared_less_sine_squared;
 use super::{Fresnel, FresnelMajorant};
 use crate::base::{Error, number_in};
@@ -9,8 +40,8 @@ use crate::num::Single;
 ///
 /// F = ½ |1 − (η + iκ)²|²/|c + w|⁴ (1 + |cw − s²|²/|cw + s²|²).
 ///
-/// [`maximum`](Fresnel::maximum) needs F to be quasi-convex in θ_h. For metals this is not proved; a
-/// numerical search over η and κ found no exception.
+/// F is quasi-convex in θ_h for every η and κ: it falls, then rises, or does only one of both. So
+/// [`maximum`](Fresnel::maximum) holds. The proof is in the source of this type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conductor {
     index: f32,

@@ -10,7 +10,8 @@ use crate::num::Single;
 ///
 /// F = ½ ((1 − η²)/(c + w)²)² (1 + ((cw − s²)/(cw + s²))²).
 ///
-/// F increases with θ_h for 2 − √3 ≤ η ≤ 2 + √3, and is quasi-convex for all other η.
+/// F increases with θ_h for 2 − √3 ≤ η ≤ 2 + √3, and is quasi-convex for all other η. The proof is that of
+/// [`Conductor`](super::Conductor), whose extinction coefficient is zero here.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dielectric {
     relative_index: f32,
