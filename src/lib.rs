@@ -13,7 +13,7 @@
 //! |---|---|---|
 //! | lobe | surface, incoming direction | what it reflects: [`GgxLobe`], [`LambertLobe`] and others |
 //! | light | lobe, position, flux | radiant intensity: [`Vpl`] |
-//! | cluster | many lights | one smooth light: [`ClusterSums`], [`Vsgl`] |
+//! | cluster | many lights, or a reflective shadow map | smooth lights: [`ClusterSums`], [`MipPyramid`], [`Vsgl`] |
 //! | ξ | rank of a light, frame | random number: [`Xi`], [`Seed`], [`rank_along_curve`] |
 //! | range | radiant intensity, ξ | range and weight: [`Roulette`] |
 //! | bound | lobe, range | shape that encloses the range: [`Ellipsoid`], [`Spheroid`], [`Sphere`] |
@@ -158,7 +158,8 @@
 //!
 //! # Sources
 //!
-//! - Dachsbacher & Stamminger 2006, *Splatting indirect illumination*.
+//! - Clarberg, Jarosz, Akenine-Möller & Jensen 2005, *Wavelet importance sampling*.
+//! - Dachsbacher & Stamminger 2005, *Reflective shadow maps*; 2006, *Splatting indirect illumination*.
 //! - Ericson 2005, *Real-time collision detection*.
 //! - Heitz 2014, *Understanding the masking-shadowing function in microfacet-based BRDFs*.
 //! - Heitz, Dupuy, Hill & Neubelt 2016, *Real-time polygonal-light shading with linearly transformed
@@ -166,6 +167,9 @@
 //! - Jarzynski & Olano 2020, *Hash functions for GPU rendering*.
 //! - Karis 2013, *Real shading in Unreal Engine 4*.
 //! - Keller 1997, *Instant radiosity*.
+//! - Kollig & Keller 2002, *Efficient multidimensional sampling*; Sobol' 1967, *On the distribution of points in a
+//!   cube and the approximate evaluation of integrals*.
+//! - Křivánek & Colbert 2008, *Real-time shading with filtered importance sampling*.
 //! - Olsson, Billeter & Assarsson 2012, *Clustered deferred and forward shading*.
 //! - Phong 1975, *Illumination for computer generated pictures*.
 //! - Schlick 1994, *An inexpensive BRDF model for physically-based rendering*.
@@ -227,7 +231,8 @@ pub use cull::{
 #[cfg(feature = "bytemuck")]
 pub use interop::{GpuEllipsoid, GpuSphere};
 pub use light::{
-    ClusterSums, DistanceWindow, FrameSeed, Roulette, Seed, Vpl, Vsgl, Xi, rank_along_curve,
+    ClusterSums, DistanceWindow, FilteredSample, FilteredSampling, FrameSeed, MipPyramid, Roulette,
+    Seed, Vpl, Vsgl, Xi, pyramid_len, rank_along_curve,
 };
 #[cfg(feature = "ltc")]
 pub use lobe::LtcLobe;

@@ -1,5 +1,5 @@
 use core::iter::Sum;
-use core::ops::{Add, AddAssign};
+use core::ops::{Add, AddAssign, Mul};
 
 use glam::Vec3;
 
@@ -223,6 +223,16 @@ impl Add for ClusterSums {
 impl AddAssign for ClusterSums {
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
+    }
+}
+
+/// A share of a cluster, as [`scaled`](ClusterSums::scaled).
+impl Mul<f32> for ClusterSums {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, factor: f32) -> Self {
+        self.scaled(factor)
     }
 }
 

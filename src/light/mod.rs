@@ -2,6 +2,8 @@
 
 mod cluster;
 mod curve;
+mod map;
+mod pyramid;
 mod roulette;
 mod vpl;
 mod vsgl;
@@ -10,6 +12,8 @@ mod xi;
 
 pub use cluster::ClusterSums;
 pub use curve::rank_along_curve;
+pub use map::{FilteredSample, FilteredSampling};
+pub use pyramid::{MipPyramid, pyramid_len};
 pub use roulette::Roulette;
 pub use vpl::Vpl;
 #[cfg(feature = "cull")]

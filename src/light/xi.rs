@@ -158,6 +158,46 @@ impl FrameSeed {
         let [bits, _] = stirred(congruential(light), first, second);
         Xi::from_bits(bits)
     }
+
+    /// A point in \[0, 1)² that is spread evenly together with those of other indices: of Sobol's sequence, with
+    /// its bits flipped by a hash of frame and seed [Sobol' 1967; Kollig & Keller 2002].
+    ///
+    /// Any 2ⁿ points whose indices begin at a multiple of 2ⁿ have one in each of 2ⁿ equal rectangles, of any of
+    /// the n + 1 shapes that halving the sides makes. Each point by itself is uniform over all seeds. The points
+    /// of different frames are independent. So take the same frame again where nothing is to flicker.
+    #[inline]
+    #[must_use]
+    pub fn point(self, index: u32) -> [f32; 2] {
+        // The second coordinate is Pascal's triangle modulo 2 times the bits of the index, doubled row by row.
+        let (mut second, mut column, mut bits) = (0, 1_u32 << 31, index);
+        while bits != 0 {
+            if bits & 1 == 1 {
+                second ^= column;
+            }
+            column ^= column >> 1;
+            bits >>= 1;
+        }
+        let [x, y] = self.frame_key;
+        let flips = stirred(POINTS, x, y);
+        below_one([index.reverse_bits() ^ flips[0], second ^ flips[1]])
+    }
+
+    /// A point in \[0, 1)² hashed from index, frame and seed: independent of other points, and of the ξ.
+    #[inline]
+    #[must_use]
+    pub fn hashed_point(self, index: u32) -> [f32; 2] {
+        let [first, second] = self.frame_key;
+        below_one(stirred(congruential(index) ^ POINTS, first, second))
+    }
+}
+
+/// What tells points from ξ.
+const POINTS: u32 = 0x6A09_E667;
+
+/// The 24 highest bits of each word, as a number in \[0, 1).
+#[inline]
+fn below_one(words: [u32; 2]) -> [f32; 2] {
+    words.map(|word| (word >> 8) as f32 * (1.0 / 16_777_216.0))
 }
 
 /// pcg3d: the first two of three hashed words.

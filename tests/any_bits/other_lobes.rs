@@ -4,9 +4,9 @@ use std::hint::black_box;
 
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicSphericalGaussian, Bounded, Camera, ClusterSums, ConstantLobe,
-    DepthInterval, DistanceWindow, Fresnel, FresnelMajorant, Ggx, GgxLobe, Incidence, LambertLobe,
-    Lobe, NoFresnel, Paper, PhongLobe, Proxy, Roulette, Seed, SphericalGaussian, SpotLobe, Tight,
-    TileRectangle, Triaxial, Vpl, Vsgl, Xi, glam::Vec3,
+    DepthInterval, DistanceWindow, FilteredSampling, Fresnel, FresnelMajorant, Ggx, GgxLobe,
+    Incidence, LambertLobe, Lobe, MipPyramid, NoFresnel, Paper, PhongLobe, Proxy, Roulette, Seed,
+    SphericalGaussian, SpotLobe, Tight, TileRectangle, Triaxial, Vpl, Vsgl, Xi, glam::Vec3,
 };
 
 use crate::bits::Bits;
@@ -140,9 +140,27 @@ fn gaussians(bits: &mut Bits, cameras: &[Camera]) {
             assert!(light.lobe().integral() >= 0.0 && light.spread() >= 0.0);
             probe::direction(light.lobe().axis());
             assert!(light.position().is_finite());
+            map(bits, sums);
         }
         probe::saved(&lobe);
         probe::light(lobe, cameras);
+    }
+}
+
+/// A map with the light in some of its texels, and clusters of it.
+fn map(bits: &mut Bits, light: ClusterSums) {
+    let size = [bits.byte(), bits.byte()].map(|side| u32::from(side % 6));
+    let mut texels = [ClusterSums::EMPTY; 60];
+    texels[usize::from(bits.byte()) % 25] = light;
+    let numbers = [bits.number(), bits.number()];
+    let sampling = FilteredSampling::new(u32::from(bits.byte()), bits.number());
+    if let (Ok(map), Ok(sampling)) = (MipPyramid::build(size, &mut texels), sampling) {
+        black_box(map.sum_at(numbers, bits.number()).glossy());
+        if let Some(sample) = map.sample(&sampling, numbers) {
+            let cluster = map.cluster(&sample).glossy();
+            assert!(cluster.lobe().integral() >= 0.0 && cluster.spread() >= 0.0);
+            assert!(sample.level >= 0.0 && sample.texels >= 0.0);
+        }
     }
 }
 
