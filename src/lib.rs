@@ -251,7 +251,8 @@ pub use view::{Camera, DepthInterval, Interleave, PixelRectangle, TileGrid, Tile
 /// The vectors and matrices of the interface.
 pub use glam;
 
-/// Compiles and runs the programs of the README.
+/// Compiles and runs the programs of the README and of the guide.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
+#[doc = include_str!("../docs/guide.md")]
 struct Readme;
