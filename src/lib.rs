@@ -190,6 +190,7 @@
 //!   spherical distributions*.
 
 #![no_std]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 #![warn(clippy::disallowed_methods)]
 
@@ -215,7 +216,6 @@ mod touch;
 
 #[cfg(feature = "cull")]
 mod cull;
-#[cfg(any(feature = "bytemuck", feature = "serde"))]
 mod interop;
 
 pub use base::{Direction, Error};
