@@ -78,7 +78,8 @@
 //! # Conventions
 //!
 //! - `f32` and the types of [`glam`]. Vectors are columns. Version 0.1 of this crate has the types of glam 0.33,
-//!   as Bevy 0.20 does, and version 0.2 those of glam 0.34. They differ in nothing else.
+//!   as Bevy 0.20 does, and version 0.2 those of glam 0.34. They differ in nothing else. If the compiler expects
+//!   `stochastic_light_culling::glam::Vec3` and finds another `Vec3`, the other version is the right one.
 //! - Directions point away from the surface. A [`Direction`] has unit length to within rounding; where a
 //!   function takes a direction as a `Vec3`, it must have unit length to 10⁻⁴.
 //! - Camera space has x to the right, y up and z = depth, positive ahead, for an engine's view space of
