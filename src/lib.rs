@@ -238,7 +238,7 @@ pub use light::{
 #[cfg(feature = "ltc")]
 pub use lobe::LtcLobe;
 pub use lobe::{
-    AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Conductor, ConstantLobe,
+    AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Cap, Conductor, ConstantLobe,
     Dielectric, Fresnel, FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, Incidence, LambertLobe,
     Lobe, MaskingShadowing, NoFresnel, PhongLobe, Schlick, Separable, SphericalGaussian, SpotLobe,
 };

@@ -137,6 +137,14 @@ pub(super) fn anisotropic_ndf<N: Single>([along, across]: [N; 2], half_vector: V
     N::select(is_above, ndf, z.zero())
 }
 
+/// The NDF where (x √(1/α_x² − 1), y √(1/α_y² − 1)) has the length `scaled_sine` for the unit half vector
+/// (x, y, z): with z² = 1 − x² − y², D = 1/(π α_x α_y (1 + `scaled_sine`²)²).
+#[inline(always)]
+pub(super) fn ndf_of_scaled_sine<N: Single>([along, across]: [N; 2], scaled_sine: N) -> N {
+    let spread = scaled_sine * scaled_sine + 1.0;
+    scaled_sine.splat(FRAC_1_PI) / (along * across) / spread / spread
+}
+
 /// The root √(α_x²x² + α_y²y² + z²) of Smith's masking functions for the unit vector `direction` = (x, y, z)
 /// in the frame of the surface. For equal z it lies between the roots of the smaller and of the larger
 /// roughness.

@@ -1,9 +1,10 @@
 use glam::Vec3;
 
-use super::anisotropic_ggx::{anisotropic_masking_root, anisotropic_ndf};
+use super::anisotropic_ggx::{anisotropic_masking_root, anisotropic_ndf, ndf_of_scaled_sine};
+use super::cap::Caps;
 use super::ggx_lobes::{GgxLobes, reflectance};
 use super::{
-    AnisotropicGgx, FIRST_NUMBERS, Fresnel, GgxLobe, HeightCorrelated, Incidence, Lobe,
+    AnisotropicGgx, Cap, FIRST_NUMBERS, Fresnel, GgxLobe, HeightCorrelated, Incidence, Lobe,
     LobeNumbers, MaskingShadowing, NoFresnel, Separable,
 };
 use crate::base::{Direction, Error};
@@ -227,6 +228,19 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
         )
     }
 
+    /// Needs of F that it is quasi-convex, and of G2 that it grows with μ_o and falls with the root of ω_o.
+    #[inline]
+    fn maximum_within(&self, cap: &Cap) -> f32 {
+        anisotropic_maximum_within::<f32, G>(
+            &self.at_any_azimuth.lanes(),
+            self.ggx.roughness(),
+            self.to_surface_frame(),
+            #[inline(always)]
+            |cosine| self.fresnel().reflectance(cosine),
+            &cap.lanes(),
+        )
+    }
+
     fn horizon_normal(&self) -> Option<Direction> {
         Some(self.normal())
     }
@@ -304,5 +318,42 @@ pub(super) fn anisotropic_value<N: Single, G: MaskingShadowing>(
         |half_vector| anisotropic_ndf(roughness, to_surface_frame * half_vector),
         #[inline(always)]
         |_| anisotropic_masking_root(roughness, to_surface_frame * outgoing),
+    )
+}
+
+/// An upper bound of [`anisotropic_value`] towards all directions of a cap.
+///
+/// The root √(α_x²x² + α_y²y² + z²) is least where each coordinate is.
+#[inline(always)]
+fn anisotropic_maximum_within<N: Single, G: MaskingShadowing>(
+    at_any_azimuth: &GgxLobes<N>,
+    roughness: [N; 2],
+    to_surface_frame: Matrix3<N>,
+    reflectance: impl Fn(N) -> N,
+    cap: &Caps<N>,
+) -> N {
+    at_any_azimuth.maximum_within_with::<G>(
+        reflectance,
+        cap,
+        #[inline(always)]
+        |half_vectors| {
+            let factors = roughness.map(
+                #[inline(always)]
+                |alpha| (alpha.one_minus() * (alpha + 1.0)).sqrt() / alpha,
+            );
+            let sine = half_vectors.least_scaled_sine(&to_surface_frame, factors);
+            ndf_of_scaled_sine(roughness, sine)
+        },
+        #[inline(always)]
+        |_| {
+            let along = |axis: Vector3<N>| cap.least_magnitude(axis);
+            let [x, y] = [
+                to_surface_frame.transpose().x,
+                to_surface_frame.transpose().y,
+            ]
+            .map(along);
+            let least = Vector3::new(x, y, cap.least_cosine(at_any_azimuth.normal));
+            anisotropic_masking_root(roughness, least)
+        },
     )
 }

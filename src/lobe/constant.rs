@@ -2,8 +2,8 @@ use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
-use super::{Lobe, LobeNumbers};
-use crate::num::{Single, Vector3};
+use super::{Cap, Lobe, LobeNumbers};
+use crate::num::{Single, Vector3, round_up};
 
 /// A lobe with the same value 1/(4π) sr⁻¹ in every direction: the ordinary point light of engines
 /// [Tokuyoshi & Harada 2016]. Its radiant intensity is its flux over 4π. [`Vpl::point`](crate::Vpl::point) takes
@@ -31,6 +31,11 @@ impl Lobe for ConstantLobe {
     #[inline]
     fn value(&self, _outgoing: Vec3) -> f32 {
         Self::PEAK
+    }
+
+    #[inline]
+    fn maximum_within(&self, _cap: &Cap) -> f32 {
+        round_up(Self::PEAK, 2)
     }
 
     fn has_more_than_numbers() -> bool {

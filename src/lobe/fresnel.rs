@@ -54,7 +54,7 @@ pub trait Fresnel: Copy + 'static {
     /// bound is clamped to \[10⁻³⁰, 1\].
     #[inline]
     fn maximum(&self, smallest_cosine: f32) -> f32 {
-        quasi_convex_maximum(|cosine| self.reflectance(cosine), smallest_cosine)
+        quasi_convex_maximum(|cosine| self.reflectance(cosine), [smallest_cosine, 1.0])
     }
 
     /// An upper bound of F in Schlick's form, for the [tight bound](crate::Tight). The closer it is to F, the
@@ -105,7 +105,7 @@ pub trait Fresnel: Copy + 'static {
             return quasi_convex_maximum(
                 #[inline(always)]
                 |cosine| Self::reflectance_in_lanes(fresnels, cosine),
-                smallest_cosine,
+                [smallest_cosine, smallest_cosine.splat(1.0)],
             );
         }
         N::per_lane(
@@ -116,16 +116,19 @@ pub trait Fresnel: Copy + 'static {
     }
 }
 
-/// An upper bound of a quasi-convex F; see [`Fresnel::maximum`].
+/// An upper bound of a quasi-convex F between two cosines; see [`Fresnel::maximum`].
 #[inline(always)]
-fn quasi_convex_maximum<N: Single>(reflectance: impl Fn(N) -> N, smallest_cosine: N) -> N {
+pub(super) fn quasi_convex_maximum<N: Single>(
+    reflectance: impl Fn(N) -> N,
+    [smallest_cosine, largest_cosine]: [N; 2],
+) -> N {
     // Powers of smaller cosines would underflow.
     let is_tiny = smallest_cosine.splat(1e-15).gt(smallest_cosine);
     let rounded = smallest_cosine * round_down(1.0, SMALLEST_COSINE_ROUNDINGS);
     let smallest_cosine = N::select(is_tiny, smallest_cosine.zero(), rounded);
-    let head_on = reflectance(smallest_cosine.splat(1.0));
+    let steepest = reflectance(largest_cosine);
     let grazing = reflectance(smallest_cosine);
-    let most = grazing.max(head_on).round_up(REFLECTANCE_ROUNDINGS);
+    let most = grazing.max(steepest).round_up(REFLECTANCE_ROUNDINGS);
     most.max(most.splat(LEAST_REFLECTED)).min(most.splat(1.0))
 }
 

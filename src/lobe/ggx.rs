@@ -110,6 +110,19 @@ pub(super) fn ndf_at<N: Single>(roughness: N, half_vector: Vector3<N>, normal: V
     N::select(is_above, ndf, cosine.zero())
 }
 
+/// The greatest D(θ_m) for sines of θ_m from `least_sine` to 1: D falls with θ_m.
+#[inline(always)]
+pub(super) fn greatest_ndf<N: Single>(roughness: N, least_sine: N) -> N {
+    let sine_squared = least_sine * least_sine;
+    let cosine_squared = least_sine.one_minus() * (least_sine + 1.0);
+    ndf_of_squares(
+        roughness,
+        cosine_squared,
+        sine_squared,
+        least_sine.splat(1.0),
+    )
+}
+
 /// D = α²/(π (α²c² + s²)²), with c² and s² given times `length_squared`.
 #[inline(always)]
 fn ndf_of_squares<N: Single>(

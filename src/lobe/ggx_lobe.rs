@@ -5,7 +5,7 @@ use glam::{Mat3, Vec3};
 use super::ggx::masking_root;
 use super::ggx_lobes::{GgxLobes, reflectance};
 use super::{
-    Fresnel, Ggx, HeightCorrelated, Incidence, Lobe, LobeNumbers, MaskingShadowing, NoFresnel,
+    Cap, Fresnel, Ggx, HeightCorrelated, Incidence, Lobe, LobeNumbers, MaskingShadowing, NoFresnel,
     Separable, padded,
 };
 use crate::base::Direction;
@@ -218,6 +218,16 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
             #[inline(always)]
             |cosine| self.fresnel.reflectance(cosine),
             outgoing.into(),
+        )
+    }
+
+    /// Needs of F that it is quasi-convex, and of G2 that it grows with μ_o.
+    #[inline]
+    fn maximum_within(&self, cap: &Cap) -> f32 {
+        self.lanes().maximum_within::<G>(
+            #[inline(always)]
+            |cosine| self.fresnel.reflectance(cosine),
+            &cap.lanes(),
         )
     }
 

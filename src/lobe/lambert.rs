@@ -2,9 +2,12 @@ use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
-use super::{Lobe, LobeNumbers, padded};
+use super::{Cap, Lobe, LobeNumbers, padded};
 use crate::base::{Direction, Error, number_in};
-use crate::num::{Single, Vector3, sqrt};
+use crate::num::{Single, Vector3, round_up, sqrt};
+
+/// Budget for the products of a maximum within a cap.
+const MAXIMUM_ROUNDINGS: u16 = 4;
 
 /// Lambert's lobe: the same radiance in every direction, f = ρ/π.
 ///
@@ -63,6 +66,12 @@ impl Lobe for LambertLobe {
     #[inline]
     fn value(&self, outgoing: Vec3) -> f32 {
         lambert(self.albedo, self.normal.into(), outgoing.into())
+    }
+
+    #[inline]
+    fn maximum_within(&self, cap: &Cap) -> f32 {
+        let cosine = cap.lanes().greatest_cosine(self.normal.into());
+        round_up(self.albedo * FRAC_1_PI * cosine.max(0.0), MAXIMUM_ROUNDINGS)
     }
 
     fn is_empty(&self) -> bool {

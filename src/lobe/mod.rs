@@ -3,6 +3,7 @@
 mod anisotropic_gaussian;
 mod anisotropic_ggx;
 mod anisotropic_ggx_lobe;
+mod cap;
 mod conductor;
 mod constant;
 mod dielectric;
@@ -28,6 +29,7 @@ pub use anisotropic_gaussian::AnisotropicSphericalGaussian;
 pub use anisotropic_ggx::AnisotropicGgx;
 pub use anisotropic_ggx_lobe::AnisotropicGgxLobe;
 pub(crate) use anisotropic_ggx_lobe::{SurfaceAxes, unit};
+pub use cap::Cap;
 pub use conductor::Conductor;
 pub use constant::ConstantLobe;
 pub use dielectric::Dielectric;
@@ -78,6 +80,16 @@ pub trait Lobe {
     ///
     /// Finite, not negative and never NaN. Zero at and below the horizon, if the lobe has one.
     fn value(&self, outgoing: Vec3) -> f32;
+
+    /// An upper bound of the value towards every direction of `cap`, which takes each direction to be a vector of
+    /// exactly unit length.
+    ///
+    /// The narrower the cap, the closer it is to the greatest value there; for a chord of zero it is the value, but
+    /// for rounding. Zero if all of the cap is below the horizon. By default it is infinite, which is true of every
+    /// lobe and rejects nothing.
+    fn maximum_within(&self, _cap: &Cap) -> f32 {
+        f32::INFINITY
+    }
 
     /// The normal of the surface below whose horizon the lobe is zero. `None` if the lobe has no horizon.
     fn horizon_normal(&self) -> Option<Direction> {

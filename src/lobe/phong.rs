@@ -2,9 +2,12 @@ use core::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::{Incidence, Lobe, LobeNumbers, padded};
+use super::{Cap, Incidence, Lobe, LobeNumbers, padded};
 use crate::base::{Direction, Error, number_in};
 use crate::num::{self, Real, Single, Vector3, exact_dot};
+
+/// Budget for the value of a maximum within a cap.
+const MAXIMUM_ROUNDINGS: u16 = 64;
 
 /// Phong's lobe: a power of the cosine to the mirror direction [Phong 1975].
 ///
@@ -137,6 +140,20 @@ impl Lobe for PhongLobe {
         self.lanes().value(outgoing.into())
     }
 
+    #[inline]
+    fn maximum_within(&self, cap: &Cap) -> f32 {
+        let (lanes, cap) = (self.lanes(), cap.lanes());
+        let distance = f64::from(cap.least_distance(lanes.axis));
+        let distance_squared = distance * distance;
+        let is_above = cap.greatest_cosine(lanes.normal) > 0.0;
+        if !is_above || self.is_empty() || distance_squared >= 2.0 {
+            return 0.0;
+        }
+        let most = lanes.value_at(distance_squared, true);
+        // It may underflow.
+        num::round_up(most, MAXIMUM_ROUNDINGS).max(f32::MIN_POSITIVE)
+    }
+
     fn horizon_normal(&self) -> Option<Direction> {
         self.incoming.map(|_| self.normal)
     }
@@ -218,14 +235,22 @@ impl<N: Single> PhongLobes<N> {
     /// made up for by the factor (1 + x)ⁿ = 1 + nx + ½n²x² + …, nx < 2⁻⁵.
     #[inline(always)]
     pub fn value(&self, outgoing: Vector3<N>) -> N {
-        let zero = self.albedo.zero();
         let apart = outgoing.widen() - self.axis.widen();
-        let half_squared = apart.length_squared() * 0.5;
+        self.value_at(
+            apart.length_squared(),
+            self.normal.dot(outgoing).is_positive(),
+        )
+    }
+
+    /// The value where the distance from the axis has the square `distance_squared`, and zero where it is not
+    /// `above` the surface.
+    #[inline(always)]
+    fn value_at(&self, distance_squared: N::Double, above: N::Mask) -> N {
+        let zero = self.albedo.zero();
+        let half_squared = distance_squared * 0.5;
         let cosine = half_squared.splat(1.0) - half_squared;
         let rounded = N::narrow(cosine);
-        let is_lit = self.albedo.is_positive()
-            & self.normal.dot(outgoing).is_positive()
-            & rounded.is_positive();
+        let is_lit = self.albedo.is_positive() & above & rounded.is_positive();
         if N::is_known_false(is_lit) {
             return zero;
         }

@@ -2,12 +2,15 @@ use core::f64::consts::TAU;
 
 use glam::Vec3;
 
-use super::{Ggx, Incidence, Lobe, LobeNumbers, padded, unit};
+use super::{Cap, Ggx, Incidence, Lobe, LobeNumbers, padded, unit};
 use crate::base::{Direction, Error, number_in};
 use crate::num::{
-    Real, Single, Vector3, exact_dot, exponential, ln_1p_f64, one_minus_exponential, sin_cos,
-    sqrt_f64,
+    Real, Single, Vector3, exact_dot, exponential, ln_1p_f64, one_minus_exponential, round_up,
+    sin_cos, sqrt_f64,
 };
+
+/// Budget for the value of a maximum within a cap.
+const MAXIMUM_ROUNDINGS: u16 = 8;
 
 /// A spherical Gaussian (SG): the lobe v(ω) = c exp(λ(ω·ξ − 1)) about the axis ξ
 /// [Tokuyoshi 2016, Sec. 2].
@@ -355,6 +358,16 @@ impl Lobe for SphericalGaussian {
         self.lanes().value(outgoing.into())
     }
 
+    #[inline]
+    fn maximum_within(&self, cap: &Cap) -> f32 {
+        let lanes = self.lanes();
+        let distance = f64::from(cap.lanes().least_distance(lanes.axis));
+        let most = lanes.value_at(distance * distance);
+        // It may underflow.
+        let most = round_up(most, MAXIMUM_ROUNDINGS).max(f32::MIN_POSITIVE);
+        most.min(self.amplitude)
+    }
+
     fn is_empty(&self) -> bool {
         self.amplitude <= 0.0
     }
@@ -408,8 +421,14 @@ impl<N: Single> SphericalGaussians<N> {
     #[inline(always)]
     pub fn value(&self, outgoing: Vector3<N>) -> N {
         let apart = outgoing.widen() - self.axis.widen();
+        self.value_at(apart.length_squared())
+    }
+
+    /// c exp(−½λd²) for `distance_squared` = d² from the axis.
+    #[inline(always)]
+    fn value_at(&self, distance_squared: N::Double) -> N {
         let half = self.sharpness.widen() * 0.5;
-        let power = exponential(-(half * apart.length_squared()));
+        let power = exponential(-(half * distance_squared));
         N::narrow(self.amplitude.widen() * power)
     }
 }

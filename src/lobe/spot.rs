@@ -2,9 +2,12 @@ use core::f32::consts::PI;
 
 use glam::Vec3;
 
-use super::{ConstantLobe, Lobe, LobeNumbers, padded};
+use super::{Cap, ConstantLobe, Lobe, LobeNumbers, padded};
 use crate::base::{Direction, Error, number_in};
-use crate::num::{Real, Single, Vector3, tan};
+use crate::num::{Real, Single, Vector3, round_down, round_up, tan};
+
+/// Budget for the value and the versine of a maximum within a cap.
+const MAXIMUM_ROUNDINGS: u16 = 16;
 
 /// The lobe of an engine's spot light: constant within an inner cone, and fading to zero at an outer cone.
 ///
@@ -149,6 +152,14 @@ impl Lobe for SpotLobe {
         )
     }
 
+    #[inline]
+    fn maximum_within(&self, cap: &Cap) -> f32 {
+        let distance = cap.lanes().least_distance(self.axis.into());
+        let versine = round_down(0.5 * distance * distance, MAXIMUM_ROUNDINGS);
+        let most = spot_of_versine(self.versines[1], self.slope(), versine);
+        round_up(most, MAXIMUM_ROUNDINGS)
+    }
+
     fn is_empty(&self) -> bool {
         self.versines[1] <= 0.0
     }
@@ -183,7 +194,12 @@ impl Lobe for SpotLobe {
 /// 1 − cosγ is ½‖ω_o − u‖², which loses no digits near the axis u.
 #[inline(always)]
 fn spot<N: Single>(axis: Vector3<N>, outer: N, slope: N, outgoing: Vector3<N>) -> N {
-    let versine = (outgoing - axis).length_squared() * 0.5;
+    spot_of_versine(outer, slope, (outgoing - axis).length_squared() * 0.5)
+}
+
+/// The value where 1 − cosγ is `versine`.
+#[inline(always)]
+fn spot_of_versine<N: Single>(outer: N, slope: N, versine: N) -> N {
     let share = (outer - versine) * slope;
     let share = Real::min(Real::max(share, outer.zero()), outer.splat(1.0));
     share * share * SpotLobe::PEAK

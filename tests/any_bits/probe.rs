@@ -3,9 +3,10 @@
 use std::hint::black_box;
 
 use stochastic_light_culling::{
-    AnisotropicGgxLobe, Bounded, Camera, DepthInterval, Direction, Ellipsoid, Fresnel, GgxLobe,
-    GpuEllipsoid, GpuSphere, HalfSpace, LambertLobe, Lobe, MaskingShadowing, PixelRectangle, Proxy,
-    Roulette, Shape, Sphere, Spheroid, Tight, TileRectangle, TileTest, Triaxial, Vpl, Xi,
+    AnisotropicGgxLobe, Bounded, Camera, Cap, DepthInterval, Direction, Ellipsoid, Fresnel,
+    GgxLobe, GpuEllipsoid, GpuSphere, HalfSpace, LambertLobe, Lobe, MaskingShadowing,
+    PixelRectangle, Proxy, Roulette, Shape, Sphere, Spheroid, Tight, TileRectangle, TileTest,
+    Triaxial, Vpl, Xi,
     glam::{Mat3, Vec2, Vec3},
     stretch_matrix, stretch_rotation,
 };
@@ -218,6 +219,12 @@ fn values(lobe: &impl Lobe, more: &[Vec3]) {
     for outgoing in axes.chain(grazing).chain(more.iter().copied()) {
         let value = lobe.value(outgoing);
         assert!(value.is_finite() && value >= 0.0, "{value} to {outgoing}");
+        let axis = Direction::new(outgoing).expect("not zero");
+        for chord in [0.0, 1e-45, 1e-3, 2.0] {
+            let most = lobe.maximum_within(&Cap::new(axis, chord).expect("in range"));
+            // The lobe's own rounding.
+            assert!(value * 0.999 <= most, "{value} above {most} to {outgoing}");
+        }
     }
 }
 

@@ -1,0 +1,225 @@
+//! Caps of directions, and what bounds a function of a direction within one.
+//!
+//! # Distances in place of angles
+//!
+//! A cap holds the unit vectors whose distance from its axis is at most its *chord*. Distances need no
+//! trigonometry, and they add: by the triangle inequality, a linear function of a direction changes within a
+//! cap by no more than its norm times the chord.
+//!
+//! So within a cap of axis w and chord c, for fixed unit vectors n and ω_i and h = ω_i + w,
+//!
+//! - ω·n ≤ w·n + c;
+//! - ‖ω − u‖ ≥ ‖w − u‖ − c for any u;
+//! - the half vector ω_i + ω lies within c of h. So ‖h‖ − c ≤ ‖ω_i + ω‖ ≤ min(‖h‖ + c, 2), and the sine of
+//!   its angle to n is ‖(ω_i + ω) × n‖/‖ω_i + ω‖ ≥ (‖h × n‖ − c)/min(‖h‖ + c, 2).
+//!
+//! Each is an equality for c = 0, so a bound that is made of them becomes the function itself as the cap closes.
+//!
+//! # Rounding
+//!
+//! All of these quantities are computed with an absolute error of a few u. So the chord is enlarged by
+//! [`CHORD_ROUNDINGS`] u, and the quotient of the sine is rounded down.
+
+use glam::Vec3;
+
+use crate::base::{Direction, Error, number_in};
+use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3, round_down, round_up, sqrt};
+
+/// Budget for dot products, cross products and differences of directions, in units of u.
+const CHORD_ROUNDINGS: f32 = 32.0;
+/// Budget for the quotient of the sine of a half vector's angle.
+const SINE_ROUNDINGS: u16 = 6;
+/// Budget for the sine of the angle of a sphere.
+const SPHERE_SINE_ROUNDINGS: u16 = 6;
+/// Budget for the chord of a sphere, beside that of its sine.
+const SPHERE_CHORD_ROUNDINGS: u16 = 6;
+
+/// A cap of directions: the unit vectors whose distance from an axis is at most a chord.
+///
+/// The chord of an angle γ between axis and edge is 2 sin ½γ: nearly γ for narrow caps, √2 for a hemisphere and
+/// 2 for all directions.
+///
+/// ```
+/// use stochastic_light_culling::{Cap, Direction, Ggx, GgxLobe, Incidence, Lobe, NoFresnel, glam::Vec3};
+///
+/// // The directions from a light to a ball of radius 1, ten units away.
+/// let cap = Cap::of_sphere(Vec3::ZERO, Vec3::new(0.0, 6.0, 8.0), 1.0);
+/// assert!((cap.chord() - 0.1).abs() < 1e-3);
+///
+/// // The lobe is nowhere greater than this in the cap.
+/// let lobe = GgxLobe::new(Ggx::new(0.3)?, NoFresnel, Incidence::head_on(Direction::Z));
+/// let most = lobe.maximum_within(&cap);
+/// let upward = Vec3::new(0.0, 5.5, 8.4).normalize();
+/// assert!(lobe.value(*cap.axis()) < lobe.value(upward) && lobe.value(upward) < most);
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cap {
+    axis: Direction,
+    chord: f32,
+}
+
+impl Cap {
+    /// Creates the cap around `axis` up to the distance `chord` from it. Zero holds the axis alone.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if `chord` is outside \[0, 2\] or NaN.
+    pub fn new(axis: Direction, chord: f32) -> Result<Self, Error> {
+        let chord = number_in("chord", chord, "in [0, 2]", 0.0..=2.0)?;
+        Ok(Self { axis, chord })
+    }
+
+    /// All directions.
+    #[must_use]
+    pub const fn all() -> Self {
+        Self {
+            axis: Direction::Z,
+            chord: 2.0,
+        }
+    }
+
+    /// The directions from `apex` to the points of the ball of this `center` and `radius`, rounded outward.
+    ///
+    /// All directions if the ball holds the apex, if a number is NaN, and if the square of the distance is outside
+    /// the range of `f32`.
+    #[must_use]
+    pub fn of_sphere(apex: Vec3, center: Vec3, radius: f32) -> Self {
+        let way = center - apex;
+        let squared = way.length_squared();
+        // The square neither overflows nor loses digits.
+        let in_range = (f32::MIN_POSITIVE..=f32::MAX).contains(&squared);
+        let distance = sqrt(squared);
+        // sinγ, and 2 sin ½γ = sinγ √(2/(1 + cosγ)).
+        let sine = round_up(radius.abs() / distance, SPHERE_SINE_ROUNDINGS);
+        match Direction::new(way) {
+            // False for NaN.
+            Ok(axis) if in_range && sine < 1.0 => {
+                let cosine = sqrt((1.0 - sine) * (1.0 + sine));
+                let chord = sine * sqrt(2.0 / (1.0 + cosine));
+                let chord = round_up(chord, SPHERE_CHORD_ROUNDINGS);
+                Self {
+                    axis,
+                    chord: (chord + CHORD_ROUNDINGS * UNIT_ROUNDOFF).min(2.0),
+                }
+            }
+            _ => Self::all(),
+        }
+    }
+
+    /// The axis.
+    #[must_use]
+    pub fn axis(&self) -> Direction {
+        self.axis
+    }
+
+    /// The greatest distance of a direction of the cap from the axis, in \[0, 2\].
+    #[must_use]
+    pub fn chord(&self) -> f32 {
+        self.chord
+    }
+
+    /// The cap as a single lane.
+    pub(super) fn lanes(&self) -> Caps<f32> {
+        Caps {
+            axis: self.axis.into(),
+            chord: self.chord + CHORD_ROUNDINGS * UNIT_ROUNDOFF,
+        }
+    }
+}
+
+/// A [`Cap`] in each lane, enlarged for rounding.
+#[derive(Clone, Copy)]
+pub(crate) struct Caps<N> {
+    axis: Vector3<N>,
+    chord: N,
+}
+
+impl<N: Single> Caps<N> {
+    /// The greatest ω·n, at most 1. Not positive if all of the cap is below the horizon of `normal` = n.
+    #[inline(always)]
+    pub fn greatest_cosine(&self, normal: Vector3<N>) -> N {
+        (normal.dot(self.axis) + self.chord).min(self.chord.splat(1.0))
+    }
+
+    /// The least ω·n, not negative: zero if some of the cap is below the horizon.
+    #[inline(always)]
+    pub fn least_cosine(&self, normal: Vector3<N>) -> N {
+        (normal.dot(self.axis) - self.chord).max(self.chord.zero())
+    }
+
+    /// The least |ω·a| for a unit vector `axis` = a.
+    #[inline(always)]
+    pub fn least_magnitude(&self, axis: Vector3<N>) -> N {
+        (axis.dot(self.axis).abs() - self.chord).max(self.chord.zero())
+    }
+
+    /// The least distance ‖ω − u‖ from a unit vector `direction` = u.
+    #[inline(always)]
+    pub fn least_distance(&self, direction: Vector3<N>) -> N {
+        ((self.axis - direction).length() - self.chord).max(self.chord.zero())
+    }
+
+    /// The half vectors ω_i + ω for `incoming` = ω_i.
+    #[inline(always)]
+    pub fn half_vectors(&self, incoming: Vector3<N>) -> HalfVectors<N> {
+        let middle = incoming + self.axis;
+        let length = middle.length();
+        let (zero, chord) = (length.zero(), self.chord);
+        HalfVectors {
+            middle,
+            lengths: [
+                (length - chord).max(zero),
+                (length + chord).min(zero.splat(2.0)),
+            ],
+            chord,
+        }
+    }
+}
+
+/// A ball that holds half vectors, in each lane.
+#[derive(Clone, Copy)]
+pub(crate) struct HalfVectors<N> {
+    /// h
+    middle: Vector3<N>,
+    /// The least and the greatest length. The latter is positive.
+    lengths: [N; 2],
+    chord: N,
+}
+
+impl<N: Single> HalfVectors<N> {
+    /// The least and the greatest cosine ω_i·ω_h = ½‖ω_i + ω‖ of the half angle.
+    #[inline(always)]
+    pub fn half_angle_cosines(&self) -> [N; 2] {
+        self.lengths.map(
+            #[inline(always)]
+            |length| length * 0.5,
+        )
+    }
+
+    /// The least sine of the angle to `normal`, at most 1.
+    #[inline(always)]
+    pub fn least_sine(&self, normal: Vector3<N>) -> N {
+        let across = self.middle.cross(normal).length();
+        let share = (across - self.chord) / self.lengths[1] * round_down(1.0, SINE_ROUNDINGS);
+        Real::max(share, share.zero()).min(share.splat(1.0))
+    }
+
+    /// The least length of (x/a, y/b) for the unit vectors (x, y, z) along the half vectors, in the frame to
+    /// which `to_frame` rotates, and the reciprocals `factors` = \[1/a, 1/b\].
+    ///
+    /// By the triangle inequality, or by that of each coordinate alone: the greater of both.
+    #[inline(always)]
+    pub fn least_scaled_sine(&self, to_frame: &Matrix3<N>, factors: [N; 2]) -> N {
+        let [a, b] = factors;
+        let Vector3 { x, y, .. } = *to_frame * self.middle;
+        let length = |x: N, y: N| (x * x + y * y).sqrt();
+        let (zero, chord) = (a.zero(), self.chord);
+        let together = length(x * a, y * b) - chord * a.max(b);
+        let alone = length(
+            (x.abs() - chord).max(zero) * a,
+            (y.abs() - chord).max(zero) * b,
+        );
+        Real::max(together, alone) / self.lengths[1] * round_down(1.0, SINE_ROUNDINGS)
+    }
+}
