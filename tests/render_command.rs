@@ -275,13 +275,13 @@ fn small_run(test: &str, more: &[&str]) -> (Value, Vec<String>) {
 #[test]
 fn measures_every_bound() {
     let (json, pictures) = small_run("small", &["--alpha", "0.1", "--seed", "3"]);
-    let [indirect, lights, reference] = ["indirect", "lights", "reference"];
+    let [indirect, lights, picture] = ["indirect", "lights", "picture"];
     let bounds = ["sphere", "enclosing", "spheroid", "triaxial", "tight"];
     let mut expected: Vec<String> = bounds
         .into_iter()
         .flat_map(|bound| ["", "-refined"].map(|kind| format!("{lights}-{bound}{kind}.png")))
         .collect();
-    expected.extend([indirect, reference].map(|name| format!("{name}.png")));
+    expected.extend([indirect, picture, "reference"].map(|name| format!("{name}.png")));
     expected.sort_unstable();
     assert_eq!(pictures, expected);
 
@@ -339,7 +339,8 @@ fn measures_what_is_asked_for() {
     let asked = ["--bound", "spheroid", "--reference", "off", "--no-denoise"];
     let (json, pictures) = small_run("asked", &asked);
     let lights = ["lights-spheroid-refined.png", "lights-spheroid.png"];
-    assert_eq!(pictures, [&["indirect.png"], &lights[..]].concat());
+    let expected = [&["indirect.png"], &lights[..], &["picture.png"]];
+    assert_eq!(pictures, expected.concat());
     let methods = json["methods"].as_array().expect("a list of methods");
     assert_eq!(methods.len(), 2);
     for (row, refined) in methods.iter().zip([false, true]) {
@@ -355,7 +356,7 @@ fn measures_what_is_asked_for() {
 fn renders_the_box() {
     let (json, pictures) = small_run("box", &["--scene", "cornell"]);
     assert_eq!(json["scene"], "cornell");
-    assert_eq!(pictures.len(), 12);
+    assert_eq!(pictures.len(), 13);
     assert!(number(&json["diffuse"], "contributing_per_pixel") > 0.0);
 }
 

@@ -1,11 +1,13 @@
 //! The command line.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
 use common::frame::BoundKind;
-use stochastic_light_culling::{Ggx, Roulette, Schlick};
+use common::scene::Gloss;
+use stochastic_light_culling::{Error, Ggx, Roulette, Schlick};
+
+use crate::look::Look;
 
 /// Renders a glossy caustic by stochastic light culling, and measures what each bound costs.
 #[derive(Debug, Parser)]
@@ -15,18 +17,21 @@ pub struct Arguments {
     #[arg(long, default_value = "ring")]
     pub scene: String,
 
-    /// A material of the file that reflects as GGX; can be given more than once [default: those
-    /// with a specular colour; of a file without materials, everything]
+    #[command(flatten)]
+    pub look: Look,
+
+    /// A material of the file that reflects as GGX; can be given more than once [default: what the file
+    /// says: those with a specular colour, or all of glTF; of a file without materials, everything]
     #[arg(long, value_name = "NAME")]
     pub glossy: Vec<String>,
 
-    /// Roughness α of glossy surfaces, in (0, 1]
-    #[arg(long, default_value = "0.1", value_parser = ggx)]
-    pub alpha: Ggx,
+    /// Roughness α of glossy surfaces, in (0, 1] [default: what the file says, else 0.1]
+    #[arg(long, value_parser = ggx)]
+    pub alpha: Option<Ggx>,
 
-    /// Their reflectance F0 at normal incidence, in [0, 1]
-    #[arg(long, default_value = "0.9", value_parser = schlick)]
-    pub f0: Schlick,
+    /// Their reflectance F0 at normal incidence, in [0, 1] [default: what the file says, else 0.9]
+    #[arg(long, value_parser = schlick)]
+    pub f0: Option<Schlick>,
 
     /// Rays from the light; each hit makes a virtual point light
     #[arg(long, default_value_t = 16384, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
@@ -85,6 +90,13 @@ pub enum ReferenceKind {
 }
 
 impl Arguments {
+    /// How glossy surfaces reflect that have no gloss of their own.
+    pub fn gloss(&self) -> Result<Gloss, Error> {
+        let ggx = self.alpha.map_or_else(|| Ggx::new(0.1), Ok)?;
+        let fresnel = self.f0.map_or_else(|| Schlick::new(0.9), Ok)?;
+        Ok(Gloss::new(ggx, fresnel))
+    }
+
     /// The bounds to measure, each once, from the loosest to the tightest.
     pub fn bounds(&self) -> Vec<BoundKind> {
         let mut bounds = if self.bound.is_empty() {
@@ -98,7 +110,7 @@ impl Arguments {
     }
 }
 
-type Refusal = Box<dyn Error + Send + Sync>;
+type Refusal = Box<dyn std::error::Error + Send + Sync>;
 
 fn ggx(text: &str) -> Result<Ggx, Refusal> {
     Ok(Ggx::new(text.parse()?)?)

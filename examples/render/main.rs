@@ -8,12 +8,14 @@
 //! once with each bound, and all lights at once for reference.
 
 mod arguments;
+mod look;
 mod output;
 mod positions;
 
 use std::process::ExitCode;
 
 use common::command::{self, say};
+use common::finish::Finish;
 use common::folder::make_folder;
 use common::frame::{self, Frame, Lights, Measured, Reference, Slicing, Tiles, Tiling, timed};
 use common::picture::{Exposure, tone_mapped, write_png};
@@ -33,21 +35,22 @@ fn render(arguments: &Arguments) -> Result<(), String> {
     let said = |error: Error| error.to_string();
     let interleave = Interleave::new(arguments.size, arguments.interleave).map_err(said)?;
     TileGrid::new(arguments.size, arguments.tile).map_err(said)?;
-    let scene = Scene::load(&arguments.scene, &arguments.glossy)?;
+    let gloss = arguments.gloss().map_err(said)?;
+    let wanted = arguments.look.wanted(&arguments.glossy);
+    let scene = Scene::load(&arguments.scene, &wanted)?;
+    let scene = scene.with_gloss(arguments.alpha, arguments.f0);
     let camera = scene.viewpoint.camera(arguments.size).map_err(said)?;
     let tracer = Tracer::new(&scene.mesh);
     let (surfaces, surfaces_ms) = timed(|| SurfaceBuffer::new(&tracer, &camera, arguments.size));
     positions::check(arguments, &scene, &camera, &surfaces)?;
     make_folder(&arguments.out)?;
+    if let Some(note) = &scene.note {
+        eprintln!("note: {note}");
+    }
 
     let (points, points_ms) = timed(|| {
-        let photons = scene::trace_photons(&tracer, &scene.spot, arguments.vpls, arguments.seed);
-        LitPoints::new(
-            &photons,
-            &scene.mesh.materials,
-            arguments.alpha,
-            arguments.f0,
-        )
+        let photons = scene::trace_photons(&tracer, &scene.lamps, arguments.vpls, arguments.seed);
+        LitPoints::new(&photons, &scene.mesh.materials, gloss.ggx, gloss.fresnel)
     });
     let points = points.map_err(said)?;
     let lights =
@@ -82,12 +85,26 @@ fn render(arguments: &Arguments) -> Result<(), String> {
 
     let (images, denoise_ms) = timed(|| denoised(arguments, &frame, &glossy, &diffuse));
     steps.push(("denoise".into(), denoise_ms));
+    let finish = Finish {
+        scene: &scene,
+        tracer: &tracer,
+        camera: &camera,
+        frame: &frame,
+        lights: &lights,
+        gloss,
+        seed: arguments.seed,
+    };
+    let (finished, finish_ms) = timed(|| finished(&finish, &images));
+    steps.push(("finish".into(), finish_ms));
+    let finished = finished.map_err(said)?;
     let (reference, reference_ms) = timed(|| reference(arguments, &frame, &lights));
     let reference = reference.map_err(said)?;
     if reference.is_some() {
         steps.push(("reference".into(), reference_ms));
     }
 
+    let picture = tone_mapped(arguments.size, &finished, Exposure::of(&finished));
+    write_png(&arguments.out, "picture.png", &picture)?;
     write_pictures(arguments, &frame, &images, &glossy, reference.as_ref())?;
     let [glossy_image, diffuse_image] = &images;
     let error = |image: &[Vec3], of: fn(&Reference) -> &[Vec3]| {
@@ -109,7 +126,7 @@ fn render(arguments: &Arguments) -> Result<(), String> {
         diffuse: row(&surfaces, &diffuse, diffuse_error),
         steps,
     };
-    report(arguments, &results);
+    report(arguments, &scene, &results);
     Ok(())
 }
 
@@ -164,6 +181,16 @@ fn denoised(
     let images = frame::cross_bilateral(frame.surfaces, noisy, || bar.inc(1));
     bar.finish_and_clear();
     images
+}
+
+/// The radiance of the picture that is lit by these glossy and diffuse lights too.
+fn finished(finish: &Finish, [glossy, diffuse]: &[Vec<Vec3>; 2]) -> Result<Vec<Vec3>, Error> {
+    let both = glossy.iter().zip(diffuse);
+    let irradiance: Vec<Vec3> = both.map(|(glossy, diffuse)| glossy + diffuse).collect();
+    let bar = progress("finishing", finish.frame.surfaces.image_size[1] as usize);
+    let picture = finish.radiance(&irradiance, || bar.inc(1));
+    bar.finish_and_clear();
+    picture
 }
 
 /// The reference of the kind asked for, or of that which can be afforded.
@@ -254,11 +281,16 @@ fn row(surfaces: &SurfaceBuffer, measured: &Measured, rmse: Option<f64>) -> Row 
 }
 
 /// The table on standard output, or on standard error with JSON on standard output.
-fn report(arguments: &Arguments, results: &Results) {
+fn report(arguments: &Arguments, scene: &Scene, results: &Results) {
+    let default = |number: f32| (!scene.has_own_gloss()).then_some(number);
     let request = Request {
         scene: &arguments.scene,
-        alpha: arguments.alpha.roughness(),
-        f0: arguments.f0.f0(),
+        alpha: arguments
+            .alpha
+            .map_or(default(0.1), |ggx| Some(ggx.roughness())),
+        f0: arguments
+            .f0
+            .map_or(default(0.9), |fresnel| Some(fresnel.f0())),
         vpls: arguments.vpls,
         delta: arguments.delta.delta(),
         size: arguments.size,

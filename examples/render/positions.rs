@@ -13,6 +13,12 @@ pub fn check(
     camera: &Camera,
     surfaces: &SurfaceBuffer,
 ) -> Result<(), String> {
+    if surfaces.surfaces.iter().all(Surface::is_sky) {
+        return Err(format!(
+            "scene {}: nothing of it is in view; --eye and --target say where to look",
+            arguments.scene
+        ));
+    }
     let pixels = TileGrid::new(surfaces.image_size, 1).map_err(|error| error.to_string())?;
     let is_outside = |pixel: &[u32; 2]| {
         let surface = surfaces.at(*pixel);

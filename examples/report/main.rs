@@ -26,7 +26,7 @@ use common::command;
 use common::folder::make_folder;
 use common::picture::write_png;
 use common::progress::progress;
-use common::scene::Scene;
+use common::scene::{Scene, Wanted};
 
 use arguments::Arguments;
 use page::Page;
@@ -44,7 +44,7 @@ fn report(arguments: &Arguments) -> Result<(), String> {
         Effort::FULL
     };
     let names = arguments.scenes();
-    let load = |name: &String| Scene::load(name, &[]);
+    let load = |name: &String| Scene::load(name, &Wanted::default());
     let scenes: Vec<Scene> = names.iter().map(load).collect::<Result<_, _>>()?;
     let subjects: Vec<Subject> = names
         .iter()

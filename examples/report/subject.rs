@@ -117,7 +117,7 @@ impl<'a> Subject<'a> {
     }
 
     fn points(&self, gloss: Gloss, vpls: u32, seed: u32) -> LitPoints {
-        let photons = trace_photons(&self.tracer, &self.scene.spot, vpls, seed);
+        let photons = trace_photons(&self.tracer, &self.scene.lamps, vpls, seed);
         LitPoints::new(
             &photons,
             &self.scene.mesh.materials,

@@ -9,8 +9,10 @@
 )]
 
 pub mod command;
+pub mod finish;
 pub mod folder;
 pub mod frame;
 pub mod picture;
 pub mod progress;
+pub mod room;
 pub mod scene;

@@ -9,8 +9,8 @@ pub fn json(request: &Request, results: &Results) -> String {
     let methods: Vec<Value> = results.glossy.iter().map(row).collect();
     json!({
         "scene": request.scene,
-        "alpha": as_typed(request.alpha),
-        "f0": as_typed(request.f0),
+        "alpha": request.alpha.map(as_typed),
+        "f0": request.f0.map(as_typed),
         "vpls": request.vpls,
         "delta": as_typed(request.delta),
         "size": request.size,

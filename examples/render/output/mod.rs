@@ -30,8 +30,9 @@ impl Row {
 /// What a run was asked for.
 pub struct Request<'a> {
     pub scene: &'a str,
-    pub alpha: f32,
-    pub f0: f32,
+    /// None if materials have their own, as with `f0`.
+    pub alpha: Option<f32>,
+    pub f0: Option<f32>,
     pub vpls: u32,
     pub delta: f32,
     pub size: [u32; 2],

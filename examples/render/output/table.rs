@@ -5,10 +5,15 @@ use super::{Request, Results, Row};
 /// The table, as the captions of the paper's Figs. 9 and 10 have it, and the time of the other steps.
 pub fn table(request: &Request, results: &Results) -> String {
     let [width, height] = request.size;
+    let of = |number: Option<f32>| number.map_or("the file's".into(), |number| number.to_string());
     let mut lines = vec![
         format!(
             "{}, {width}×{height}, {} rays, α = {}, F0 = {}, δ = {}",
-            request.scene, request.vpls, request.alpha, request.f0, request.delta
+            request.scene,
+            request.vpls,
+            of(request.alpha),
+            of(request.f0),
+            request.delta
         ),
         String::new(),
         format!(

@@ -3,9 +3,9 @@
 use stochastic_light_culling::glam::{Mat3, Vec3};
 
 use super::mesh::{Material, Mesh};
-use super::{Scene, Spot, Viewpoint};
+use super::{Focus, Scene, Viewpoint, Wanted};
 
-pub fn scene() -> Scene {
+pub fn scene(wanted: &Wanted) -> Scene {
     let mut mesh = Mesh::default();
     let [white, red, green] = [[0.73, 0.71, 0.68], [0.63, 0.065, 0.05], [0.14, 0.45, 0.09]]
         .map(|albedo| mesh.add_material(Material::diffuse(albedo.into())));
@@ -28,16 +28,17 @@ pub fn scene() -> Scene {
     );
 
     let light = Vec3::new(0.45, 1.95, 0.85);
-    let tall_block = Vec3::new(-0.34, 0.6, -0.3);
+    let tall_block = Focus {
+        center: Vec3::new(-0.34, 0.6, -0.3),
+        radius: 1.1,
+        irradiance: Vec3::splat(0.08),
+    };
+    let viewpoint = Viewpoint::around(Vec3::new(0.0, 1.0, 0.0), 1.3, Vec3::Z, 0.6);
     Scene {
         mesh,
-        spot: Spot::aimed_at(light, tall_block, 1.1, Vec3::splat(0.08)),
-        viewpoint: Viewpoint {
-            target: Vec3::new(0.0, 1.0, 0.0),
-            radius: 1.3,
-            to_eye: Vec3::Z,
-            fov_radians: 0.6,
-        },
+        lamps: tall_block.lamps(wanted, light),
+        viewpoint: viewpoint.changed(wanted),
+        note: None,
     }
 }
 

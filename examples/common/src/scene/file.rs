@@ -3,16 +3,20 @@
 use std::panic;
 use std::path::Path;
 
-use stochastic_light_culling::glam::Vec3;
+use stochastic_light_culling::{Error, Ggx, Schlick, glam::Vec3};
 
-use super::mesh::{Material, Mesh, Triangle};
-use super::{gltf, obj, smooth};
+use super::mesh::{Gloss, Material, Mesh, Triangle};
+use super::{Lamp, Viewpoint, gltf, obj, smooth};
 
 /// What a file says, before it is checked.
 #[derive(Default)]
 pub struct Contents {
     pub parts: Vec<Part>,
     pub materials: Vec<NamedMaterial>,
+    pub lamps: Vec<Lamp>,
+    pub viewpoint: Option<Viewpoint>,
+    /// Whether files of this format can have lights and cameras.
+    pub has_lights: bool,
 }
 
 /// Triangles of one material: three places in `positions` and `normals` for each. No normals, or as
@@ -27,16 +31,41 @@ pub struct Part {
 pub struct NamedMaterial {
     pub name: String,
     pub base: Vec3,
-    pub specular: Vec3,
+    pub reflecting: Reflecting,
     pub emission: Vec3,
 }
 
-/// The mesh in the file at `path`, with the materials named in `glossy` made glossy; without names,
-/// those with a specular colour; if the file has no materials at all, everything.
-pub fn load(path: &Path, glossy: &[String]) -> Result<Mesh, String> {
-    let name = path.display();
-    let contents = read(path).map_err(|reason| format!("scene {name}: {reason}"))?;
-    mesh(&contents, glossy).map_err(|reason| format!("scene {name}: {reason}"))
+/// How a file says what reflects.
+#[derive(Clone, Copy)]
+pub enum Reflecting {
+    /// By a colour; black if it is diffuse alone.
+    Colours { specular: Vec3 },
+    /// By a share of metal and a roughness, whose square is α.
+    MetallicRoughness { metallic: f32, roughness: f32 },
+}
+
+/// What a file says.
+pub struct Loaded {
+    pub mesh: Mesh,
+    pub lamps: Vec<Lamp>,
+    pub viewpoint: Option<Viewpoint>,
+    /// Whether files of this format can have lights and cameras.
+    pub has_lights: bool,
+}
+
+/// What the file at `path` says, with the materials named in `glossy` made glossy; without names,
+/// those that the file says are; if the file has no materials at all, everything.
+pub fn load(path: &Path, glossy: &[String]) -> Result<Loaded, String> {
+    let loaded = || {
+        let contents = read(path)?;
+        Ok(Loaded {
+            mesh: mesh(&contents, glossy)?,
+            lamps: contents.lamps,
+            viewpoint: contents.viewpoint,
+            has_lights: contents.has_lights,
+        })
+    };
+    loaded().map_err(|reason: String| format!("scene {}: {reason}", path.display()))
 }
 
 fn read(path: &Path) -> Result<Contents, String> {
@@ -91,27 +120,64 @@ fn materials(named: &[NamedMaterial], glossy: &[String]) -> Result<Vec<Material>
 }
 
 fn material(named: &NamedMaterial, glossy: &[String]) -> Result<Material, String> {
-    let colors = [named.base, named.specular, named.emission];
+    let reflecting = match named.reflecting {
+        Reflecting::Colours { specular } => specular,
+        Reflecting::MetallicRoughness {
+            metallic,
+            roughness,
+        } => Vec3::new(metallic, roughness, 0.0),
+    };
+    let colors = [named.base, reflecting, named.emission];
     if let Some(color) = colors.into_iter().find(|color| !color.is_finite()) {
         return Err(format!("material {} has a colour {color}", named.name));
     }
-    let [base, specular] = [named.base, named.specular].map(|c| c.clamp(Vec3::ZERO, Vec3::ONE));
-    let has_coat = specular.max_element() > 0.0;
-    let is_glossy = if glossy.is_empty() {
-        has_coat
-    } else {
-        glossy.contains(&named.name)
+    let base = named.base.clamp(Vec3::ZERO, Vec3::ONE);
+    let is_named = || glossy.contains(&named.name);
+    let reflecting = match named.reflecting {
+        Reflecting::Colours { specular } => {
+            let specular = specular.clamp(Vec3::ZERO, Vec3::ONE);
+            let has_coat = specular.max_element() > 0.0;
+            let is_glossy = if glossy.is_empty() {
+                has_coat
+            } else {
+                is_named()
+            };
+            is_glossy.then(|| Material::glossy(base, if has_coat { specular } else { base }))
+        }
+        Reflecting::MetallicRoughness {
+            metallic,
+            roughness,
+        } if glossy.is_empty() || is_named() => {
+            Some(metallic_roughness(base, metallic, roughness)?)
+        }
+        Reflecting::MetallicRoughness { .. } => None,
     };
-    let reflecting = if is_glossy {
-        Material::glossy(base, if has_coat { specular } else { base })
-    } else {
-        Material::diffuse(base)
+    let mut material = reflecting.unwrap_or_else(|| Material::diffuse(base));
+    material.emission = named.emission.max(Vec3::ZERO);
+    Ok(material)
+}
+
+/// The material of these parameters of glTF 2.0, which says what α and the reflectance are.
+fn metallic_roughness(base: Vec3, metallic: f32, roughness: f32) -> Result<Material, String> {
+    /// Of all that does not conduct.
+    const DIELECTRIC: Vec3 = Vec3::splat(0.04);
+    /// The least α: the lobe of a perfect mirror is no number.
+    const MIRROR: f32 = 0.01;
+    /// That of lights, with some ten thousand of them in a room.
+    const SMOOTHEST_LIGHT: f32 = 0.1;
+    let said = |error: Error| error.to_string();
+    let metallic = metallic.clamp(0.0, 1.0);
+    let f0 = DIELECTRIC.lerp(base, metallic);
+    let brightest = f0.max_element();
+    let ggx = |least: f32| Ggx::new((roughness * roughness).clamp(least, 1.0)).map_err(said);
+    let gloss = Gloss {
+        light_ggx: ggx(SMOOTHEST_LIGHT)?,
+        ..Gloss::new(ggx(MIRROR)?, Schlick::new(brightest).map_err(said)?)
     };
-    let emissive = named.emission.max_element() > 0.0;
-    Ok(Material {
-        emissive,
-        ..reflecting
-    })
+    let tint = f0 / brightest.max(f32::MIN_POSITIVE);
+    let mut material = Material::coated(base, tint, 1.0 - metallic);
+    material.gloss = Some(gloss);
+    Ok(material)
 }
 
 /// The triangles of `part` but for those without an area.

@@ -6,9 +6,10 @@ use std::path::Path;
 use gltf::{Node, Primitive, buffer, mesh::Mode};
 use stochastic_light_culling::glam::{Mat3, Mat4, Vec3};
 
-use super::file::{Contents, NamedMaterial, Part};
+use super::file::{Contents, NamedMaterial, Part, Reflecting};
+use super::gltf_lights as lights;
 
-/// What the file at `path` says, in its default scene. Pictures are not looked at.
+/// What the file at `path` says, in its default scene. Of textures their factors are taken.
 pub fn read(path: &Path) -> Result<Contents, String> {
     let one_line = |error: gltf::Error| error.to_string().replace('\n', " ");
     let file = gltf::Gltf::open(path).map_err(one_line)?;
@@ -16,7 +17,11 @@ pub fn read(path: &Path) -> Result<Contents, String> {
         gltf::import_buffers(&file.document, path.parent(), file.blob).map_err(one_line)?;
     let mut reader = Reader {
         buffers: &buffers,
-        parts: Vec::new(),
+        contents: Contents {
+            materials: file.document.materials().map(|m| material(&m)).collect(),
+            has_lights: true,
+            ..Contents::default()
+        },
         visited: HashSet::new(),
     };
     let scene = file.document.default_scene();
@@ -24,20 +29,17 @@ pub fn read(path: &Path) -> Result<Contents, String> {
     for node in scene.ok_or("has no scene")?.nodes() {
         reader.visit(&node, Mat4::IDENTITY)?;
     }
-    Ok(Contents {
-        parts: reader.parts,
-        materials: file.document.materials().map(|m| material(&m)).collect(),
-    })
+    Ok(reader.contents)
 }
 
 struct Reader<'a> {
     buffers: &'a [buffer::Data],
-    parts: Vec<Part>,
+    contents: Contents,
     visited: HashSet<usize>,
 }
 
 impl Reader<'_> {
-    /// The meshes of `node` and of those below it.
+    /// The meshes, the lights and the first camera of `node` and of those below it.
     fn visit(&mut self, node: &Node, above: Mat4) -> Result<(), String> {
         if !self.visited.insert(node.index()) {
             return Err(format!("node {} has two parents", node.index()));
@@ -45,8 +47,15 @@ impl Reader<'_> {
         let to_world = above * Mat4::from_cols_array_2d(&node.transform().matrix());
         for primitive in node.mesh().iter().flat_map(gltf::Mesh::primitives) {
             if primitive.mode() == Mode::Triangles {
-                self.parts.push(self.part(&primitive, to_world)?);
+                let part = self.part(&primitive, to_world)?;
+                self.contents.parts.push(part);
             }
+        }
+        if let Some(light) = node.light() {
+            self.contents.lamps.extend(lights::lamp(&light, to_world)?);
+        }
+        if let (Some(camera), None) = (node.camera(), self.contents.viewpoint) {
+            self.contents.viewpoint = lights::viewpoint(&camera, to_world)?;
         }
         node.children()
             .try_for_each(|child| self.visit(&child, to_world))
@@ -80,11 +89,13 @@ impl Reader<'_> {
 fn material(material: &gltf::Material) -> NamedMaterial {
     let surface = material.pbr_metallic_roughness();
     let [red, green, blue, _] = surface.base_color_factor();
-    let base = Vec3::new(red, green, blue);
     NamedMaterial {
         name: material.name().unwrap_or_default().to_owned(),
-        base,
-        specular: base * surface.metallic_factor(),
+        base: Vec3::new(red, green, blue),
+        reflecting: Reflecting::MetallicRoughness {
+            metallic: surface.metallic_factor(),
+            roughness: surface.roughness_factor(),
+        },
         emission: material.emissive_factor().into(),
     }
 }

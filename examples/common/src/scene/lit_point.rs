@@ -5,7 +5,7 @@ use stochastic_light_culling::{
     glam::{FloatExt, Vec3},
 };
 
-use super::mesh::Material;
+use super::mesh::{Gloss, Material};
 use super::photon::Photon;
 
 /// A point that sends on light: what becomes a virtual point light.
@@ -27,7 +27,8 @@ pub struct LitPoints {
 }
 
 impl LitPoints {
-    /// One glossy point, one diffuse point or both for each of `photons`, as its material reflects.
+    /// One glossy point, one diffuse point or both for each of `photons`, as its material reflects: with `ggx` and
+    /// `fresnel`, unless it has its own.
     pub fn new(
         photons: &[Photon],
         materials: &[Material],
@@ -44,11 +45,12 @@ impl LitPoints {
             let normal = photon.incidence.normal;
             points.footprint = (points.footprint).lerp(photon.footprint, 1.0 / (i + 1) as f32);
             if material.glossy {
+                let gloss = material.gloss.unwrap_or(Gloss::new(ggx, fresnel));
                 points.glossy.push(LitPoint {
                     position: photon.position,
                     normal,
                     flux: photon.flux * material.tint,
-                    lobe: GgxLobe::new(ggx, fresnel, photon.incidence),
+                    lobe: GgxLobe::new(gloss.light_ggx, gloss.fresnel, photon.incidence),
                 });
             }
             let albedo = material.albedo.max_element();

@@ -1,6 +1,6 @@
 //! Triangles and what they are made of.
 
-use stochastic_light_culling::glam::Vec3;
+use stochastic_light_culling::{Ggx, Schlick, glam::Vec3};
 
 /// What a surface reflects: a diffuse part, and for glossy ones a GGX part of the colour `tint`.
 #[derive(Clone, Debug)]
@@ -8,8 +8,33 @@ pub struct Material {
     pub albedo: Vec3,
     pub tint: Vec3,
     pub glossy: bool,
-    /// Whether it shines by itself: where a file's light comes from.
-    pub emissive: bool,
+    /// Its own roughness and reflectance, if it has any.
+    pub gloss: Option<Gloss>,
+    /// The radiance of what shines by itself, in the units of the file that it comes from.
+    pub emission: Vec3,
+    /// The share of light that a coat leaves to what is below it, and zero of bare metal.
+    below_coat: f32,
+    base: Vec3,
+}
+
+/// How a surface reflects as GGX.
+#[derive(Clone, Copy, Debug)]
+pub struct Gloss {
+    pub ggx: Ggx,
+    pub fresnel: Schlick,
+    /// Of the lights on it. They stand for those between them too, and would each throw a spot of its own if they were
+    /// as smooth as a mirror.
+    pub light_ggx: Ggx,
+}
+
+impl Gloss {
+    pub fn new(ggx: Ggx, fresnel: Schlick) -> Self {
+        Self {
+            ggx,
+            fresnel,
+            light_ggx: ggx,
+        }
+    }
 }
 
 impl Material {
@@ -18,24 +43,47 @@ impl Material {
             albedo,
             tint: Vec3::ZERO,
             glossy: false,
-            emissive: false,
+            gloss: None,
+            emission: Vec3::ZERO,
+            below_coat: 1.0,
+            base: albedo,
         }
     }
 
-    /// A GGX coat of the colour `tint` over a diffuse `base`, which gets what the coat leaves: never
-    /// quite nothing, so that bare metal can be told from a hole in its own picture.
+    /// A GGX coat of the colour `tint` over a diffuse `base`, which gets what the coat leaves.
     pub fn glossy(base: Vec3, tint: Vec3) -> Self {
+        Self::coated(base, tint, 1.0 - tint.max_element())
+    }
+
+    /// As [`Self::glossy`], with the share of `base` that is left. As a light and in the picture of indirect light
+    /// it is never quite nothing, so that bare metal can be told from a hole.
+    pub fn coated(base: Vec3, tint: Vec3, below_coat: f32) -> Self {
         Self {
-            albedo: base * (1.0 - tint.max_element()).max(0.15),
+            albedo: base * below_coat.max(0.15),
             tint,
             glossy: true,
-            emissive: false,
+            below_coat,
+            ..Self::diffuse(base)
         }
     }
 
     /// Bare metal of one colour.
     pub fn metal(tint: Vec3) -> Self {
         Self::glossy(tint, tint)
+    }
+
+    pub fn is_emissive(&self) -> bool {
+        self.emission.max_element() > 0.0
+    }
+
+    /// Whether it is worth looking at: what files call glossy, and metal.
+    pub fn stands_out(&self) -> bool {
+        self.glossy && (self.gloss.is_none() || self.below_coat < 0.5)
+    }
+
+    /// The diffuse albedo as it is: zero of bare metal.
+    pub fn true_albedo(&self) -> Vec3 {
+        self.base * self.below_coat.max(0.0)
     }
 }
 
@@ -122,10 +170,21 @@ impl Extent {
                 min: corner,
                 max: corner,
             })
-            .reduce(|a, b| Self {
-                min: a.min.min(b.min),
-                max: a.max.max(b.max),
-            })
+            .reduce(|a, b| a.with(&b))
+    }
+
+    /// The box around both.
+    pub fn with(&self, other: &Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+        }
+    }
+
+    /// Whether the two boxes are no farther apart than `distance` along any axis.
+    pub fn is_near(&self, other: &Self, distance: f32) -> bool {
+        let gap = (other.min - self.max).max(self.min - other.max);
+        gap.max_element() <= distance
     }
 
     pub fn center(&self) -> Vec3 {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use stochastic_light_culling::glam::Vec3;
 
-use super::file::{Contents, NamedMaterial, Part};
+use super::file::{Contents, NamedMaterial, Part, Reflecting};
 
 /// What the file at `path` says. Materials that cannot be read count as none.
 pub fn read(path: &Path) -> Result<Contents, String> {
@@ -19,6 +19,7 @@ pub fn read(path: &Path) -> Result<Contents, String> {
     Ok(Contents {
         parts: models.into_iter().map(|model| part(&model.mesh)).collect(),
         materials: materials.into_iter().map(material).collect(),
+        ..Contents::default()
     })
 }
 
@@ -37,7 +38,9 @@ fn material(material: tobj::Material) -> NamedMaterial {
         |given: Option<[f32; 3]>, otherwise| given.map_or(Vec3::splat(otherwise), Vec3::from);
     NamedMaterial {
         base: color(material.diffuse, 0.6),
-        specular: color(material.specular, 0.0),
+        reflecting: Reflecting::Colours {
+            specular: color(material.specular, 0.0),
+        },
         emission: color(material.emissive, 0.0),
         name: material.name,
     }

@@ -3,8 +3,9 @@
 use rayon::prelude::*;
 use stochastic_light_culling::{Direction, Incidence, glam::Vec3};
 
+use super::beam::Beam;
 use super::random::{Purpose, uniform};
-use super::{Spot, Tracer};
+use super::{Lamp, Tracer};
 
 /// Where light from the spot arrives, and how much.
 #[derive(Clone, Copy, Debug)]
@@ -18,37 +19,60 @@ pub struct Photon {
     pub material: usize,
 }
 
-/// The photons of `count` rays, one through each cell of a grid over the spot's window, in random
-/// order.
-pub fn trace_photons(tracer: &Tracer, spot: &Spot, count: u32, seed: u32) -> Vec<Photon> {
-    let grid = Grid::new(count);
-    let mut photons: Vec<(f32, Photon)> = (0..count)
-        .into_par_iter()
-        .filter_map(|ray| {
-            let jitter = [Purpose::JitterX, Purpose::JitterY].map(|p| uniform(ray, p, seed));
-            let (x, y, area) = grid.point(ray, jitter);
-            let photon = trace_photon(tracer, spot, [x, y], area)?;
-            Some((uniform(ray, Purpose::Shuffle, seed), photon))
-        })
+/// The photons of `count` rays, in random order. Each of the beams of `lamps` has its share by power, one ray
+/// through each cell of a grid.
+pub fn trace_photons(tracer: &Tracer, lamps: &[Lamp], count: u32, seed: u32) -> Vec<Photon> {
+    let extent = tracer.extent();
+    let beams: Vec<Beam> = lamps
+        .iter()
+        .flat_map(|lamp| Beam::of(lamp, &extent))
         .collect();
+    let mut photons: Vec<(f32, Photon)> = Vec::new();
+    let starts = starts(&beams, count);
+    for (beam, of_beam) in beams.iter().zip(starts.windows(2)) {
+        let (start, end) = (of_beam[0], of_beam[1]);
+        let grid = Grid::new(end - start);
+        photons.par_extend((start..end).into_par_iter().filter_map(|ray| {
+            let jitter = [Purpose::JitterX, Purpose::JitterY].map(|p| uniform(ray, p, seed));
+            let (x, y, area) = grid.point(ray - start, jitter);
+            let photon = trace_photon(tracer, beam, [x, y], area)?;
+            Some((uniform(ray, Purpose::Shuffle, seed), photon))
+        }));
+    }
     photons.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     photons.into_iter().map(|(_, photon)| photon).collect()
 }
 
-fn trace_photon(tracer: &Tracer, spot: &Spot, [x, y]: [f32; 2], area: f32) -> Option<Photon> {
-    let (ray, density) = spot.ray(x, y);
-    let hit = tracer.nearest(spot.position, ray)?;
-    let solid_angle = density * area;
-    let cosine = -hit.plane_normal.dot(ray.normalize());
-    let distance_squared = hit.position.distance_squared(spot.position);
+/// The first of `count` rays for each beam, and `count`.
+fn starts(beams: &[Beam], count: u32) -> Vec<u32> {
+    let powers: Vec<f64> = beams.iter().map(|beam| beam.power().into()).collect();
+    let sum: f64 = powers.iter().sum();
+    let mut before = 0.0;
+    let start = |power: &f64| {
+        let start = f64::from(count) * before / sum;
+        before += power;
+        start.round() as u32
+    };
+    let starts: Vec<u32> = powers.iter().map(start).collect();
+    [&starts[..], &[count]].concat()
+}
+
+fn trace_photon(tracer: &Tracer, beam: &Beam, [x, y]: [f32; 2], area: f32) -> Option<Photon> {
+    let ray = beam.ray(x, y, area);
+    if ray.flux.max_element() <= 0.0 {
+        return None;
+    }
+    let hit = tracer.nearest_unlit(ray.origin, ray.direction)?;
+    let cosine = -hit.plane_normal.dot(ray.direction.normalize());
+    let distance_squared = hit.position.distance_squared(ray.origin);
     Some(Photon {
         position: hit.position,
         incidence: Incidence {
             normal: Direction::new(hit.normal).ok()?,
-            incoming: Direction::new(-ray).ok()?,
+            incoming: Direction::new(-ray.direction).ok()?,
         },
-        flux: spot.intensity * solid_angle,
-        footprint: distance_squared * solid_angle / cosine.max(0.1),
+        flux: ray.flux,
+        footprint: (distance_squared * ray.solid_angle + ray.area) / cosine.max(0.1),
         material: hit.material,
     })
 }

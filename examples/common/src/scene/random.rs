@@ -9,6 +9,8 @@ pub enum Purpose {
     JitterX = 0xffff_fff0,
     JitterY,
     Shuffle,
+    ReflectionX,
+    ReflectionY,
 }
 
 /// A number in (0, 1] for the thing `index`.

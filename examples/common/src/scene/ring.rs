@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 use stochastic_light_culling::glam::{Vec2, Vec3};
 
 use super::mesh::{Material, Mesh, Triangle};
-use super::{Scene, Spot, Viewpoint};
+use super::{Focus, Scene, Viewpoint, Wanted};
 
 const INNER_RADIUS: f32 = 1.0;
 const THICKNESS: f32 = 0.12;
@@ -15,7 +15,7 @@ const EDGE_RADIUS: f32 = 0.015;
 const PIECES: usize = 256;
 const EDGE_PIECES: usize = 6;
 
-pub fn scene() -> Scene {
+pub fn scene(wanted: &Wanted) -> Scene {
     let mut mesh = Mesh::default();
     let floor = mesh.add_material(Material::diffuse(Vec3::new(0.62, 0.6, 0.58)));
     let gold = mesh.add_material(Material::metal(Vec3::new(1.0, 0.78, 0.37)));
@@ -24,17 +24,19 @@ pub fn scene() -> Scene {
     mesh.add_quad(corners.map(|(x, z)| corner(x, z)), floor);
     mesh.triangles.extend(band(gold));
 
-    let target = Vec3::new(0.0, 0.5 * HEIGHT, 0.0);
+    let focus = Focus {
+        center: Vec3::new(0.0, 0.5 * HEIGHT, 0.0),
+        radius: 1.15,
+        irradiance: Vec3::splat(0.05),
+    };
     let light = Vec3::new(4.6, 4.4, 2.4);
+    let to_eye = Vec3::new(0.0, 0.8, 0.6);
+    let viewpoint = Viewpoint::around(Vec3::new(0.0, 0.1, 0.0), 1.5, to_eye, 0.6);
     Scene {
         mesh,
-        spot: Spot::aimed_at(light, target, 1.15, Vec3::splat(0.05)),
-        viewpoint: Viewpoint {
-            target: Vec3::new(0.0, 0.1, 0.0),
-            radius: 1.5,
-            to_eye: Vec3::new(0.0, 0.8, 0.6),
-            fov_radians: 0.6,
-        },
+        lamps: focus.lamps(wanted, light),
+        viewpoint: viewpoint.changed(wanted),
+        note: None,
     }
 }
 

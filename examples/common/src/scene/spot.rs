@@ -1,4 +1,4 @@
-//! The light that everything comes from.
+//! A light behind a window.
 
 use stochastic_light_culling::glam::Vec3;
 

@@ -7,7 +7,7 @@ use obvhs::cwbvh::{CwBvh, builder::build_cwbvh_from_tris};
 use obvhs::ray::{Ray, RayHit};
 use stochastic_light_culling::glam::Vec3;
 
-use super::mesh::{Mesh, Triangle, twice_area};
+use super::mesh::{Extent, Material, Mesh, Triangle, twice_area};
 
 /// A mesh made ready for rays.
 pub struct Tracer<'a> {
@@ -25,6 +25,14 @@ pub struct Hit {
     pub normal: Vec3,
     pub plane_normal: Vec3,
     pub material: usize,
+}
+
+impl Hit {
+    /// Where a ray away from the surface starts, so that rounding does not put it behind the surface.
+    pub fn off_surface(&self) -> Vec3 {
+        let rounding = 2e-5 * (self.position.abs().max_element() + self.distance);
+        self.position + rounding * self.plane_normal
+    }
 }
 
 impl<'a> Tracer<'a> {
@@ -45,13 +53,55 @@ impl<'a> Tracer<'a> {
         self.mesh.materials[hit.material].albedo
     }
 
+    /// The material of what a ray met.
+    pub fn material(&self, hit: &Hit) -> &Material {
+        &self.mesh.materials[hit.material]
+    }
+
+    /// The box around all triangles; empty at the origin without any.
+    pub fn extent(&self) -> Extent {
+        self.mesh.extent().unwrap_or(Extent {
+            min: Vec3::ZERO,
+            max: Vec3::ZERO,
+        })
+    }
+
     /// What the ray from `origin` along `direction` meets first.
     pub fn nearest(&self, origin: Vec3, direction: Vec3) -> Option<Hit> {
-        let ray = Ray::new_inf(origin.to_array().into(), direction.to_array().into());
+        self.nearest_of(origin, direction, f32::INFINITY, |_| true)
+    }
+
+    /// As [`Self::nearest`], but through whatever shines by itself: the bulb around a light does not shade it.
+    pub fn nearest_unlit(&self, origin: Vec3, direction: Vec3) -> Option<Hit> {
+        self.nearest_of(origin, direction, f32::INFINITY, |m| !m.is_emissive())
+    }
+
+    /// Whether light comes to `point` on a surface from `distance` away along `direction`, of unit length.
+    pub fn is_lit(&self, point: &Hit, direction: Vec3, distance: f32) -> bool {
+        let start = point.off_surface();
+        let reach = distance - 2.0 * start.distance(point.position);
+        let shade = self.nearest_of(start, direction, reach, |m| !m.is_emissive());
+        shade.is_none()
+    }
+
+    fn nearest_of(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        reach: f32,
+        is_met: impl Fn(&Material) -> bool,
+    ) -> Option<Hit> {
+        let [from, along] = [origin, direction].map(|v| v.to_array().into());
+        let ray = Ray::new(from, along, 0.0, reach);
         let mut nearest = RayHit::none();
         let index = |primitive: usize| self.bvh.primitive_indices[primitive] as usize;
         let met = self.bvh.ray_traverse(ray, &mut nearest, |ray, primitive| {
-            self.shapes[index(primitive)].intersect(ray)
+            let primitive = index(primitive);
+            if is_met(self.mesh.material_of(&self.mesh.triangles[primitive])) {
+                self.shapes[primitive].intersect(ray)
+            } else {
+                f32::INFINITY
+            }
         });
         if !met {
             return None;
