@@ -72,8 +72,8 @@ impl Sums {
     }
 }
 
-/// Shades all pixels by the lists that `list_of` gives for a pixel and the depth of its surface; calls
-/// `done` after each row of a subregion.
+/// Shades all pixels by the lists that `list_of` gives for a pixel of a subregion and the depth of its surface;
+/// calls `done` after each row of a subregion.
 ///
 /// If pixels side by side share lists, as those of a tile do, lights are evaluated at sixteen of them at once,
 /// else several pixels with their lists at once. The sums are the same.
@@ -81,7 +81,7 @@ pub fn shade<'a, L: Lobe + Copy + Sync>(
     frame: &Frame,
     share_lists: bool,
     lights: &[Light<L>],
-    list_of: impl Fn([u32; 2], f32) -> Option<&'a [u32]> + Sync,
+    list_of: impl Fn((u32, [u32; 2]), f32) -> Option<&'a [u32]> + Sync,
     done: impl Fn() + Sync,
 ) -> Shaded {
     let mut image = Shaded::black(frame.surfaces.surfaces.len());
@@ -99,7 +99,7 @@ pub fn count_facing<'a, L: Lobe + Sync>(
     frame: &Frame,
     subregions: Range<u32>,
     lights: &[Light<L>],
-    list_of: impl Fn([u32; 2], f32) -> Option<&'a [u32]> + Sync,
+    list_of: impl Fn((u32, [u32; 2]), f32) -> Option<&'a [u32]> + Sync,
     image: &mut Shaded,
 ) {
     let width = frame.surfaces.image_size[0] as usize;
@@ -107,9 +107,10 @@ pub fn count_facing<'a, L: Lobe + Sync>(
     rows.for_each(|(y, evaluated)| {
         for (x, evaluated) in evaluated.iter_mut().enumerate() {
             let pixel = [x as u32, y as u32];
-            if subregions.contains(&frame.interleave.split_pixel(pixel).0) {
+            let local = frame.interleave.split_pixel(pixel);
+            if subregions.contains(&local.0) {
                 let surface = frame.surfaces.at(pixel);
-                let list = list_of(pixel, surface.depth).unwrap_or_default();
+                let list = list_of(local, surface.depth).unwrap_or_default();
                 let faces = |i: &&u32| !lights[**i as usize].has_back_to(surface);
                 *evaluated = list.iter().filter(faces).count() as u32;
             }
@@ -139,13 +140,17 @@ impl<'a> Row<'a> {
         &mut self,
         frame: &Frame,
         [first, y]: [u32; 2],
-        list_of: impl Fn([u32; 2], f32) -> Option<&'a [u32]>,
+        list_of: impl Fn((u32, [u32; 2]), f32) -> Option<&'a [u32]>,
     ) {
         self.pixels.clear();
         let width = frame.surfaces.image_size[0];
-        for x in (first..width).step_by(frame.interleave.width() as usize) {
+        // Divided once a row.
+        let (subregion, local) = frame.interleave.split_pixel([first, y]);
+        let columns = (first..width).step_by(frame.interleave.width() as usize);
+        for (x, column) in columns.zip(local[0]..) {
             let surface = frame.surfaces.at([x, y]);
-            if let Some(list) = list_of([x, y], surface.depth) {
+            let pixel = (subregion, [column, local[1]]);
+            if let Some(list) = list_of(pixel, surface.depth) {
                 self.pixels.push(Pixel {
                     column: x as usize,
                     point: surface.position.into(),
@@ -192,7 +197,7 @@ impl<L: Lobe + Copy> Shading<L> {
         frame: &Frame,
         subregions: Range<u32>,
         share_lists: bool,
-        list_of: impl Fn([u32; 2], f32) -> Option<&'a [u32]> + Sync,
+        list_of: impl Fn((u32, [u32; 2]), f32) -> Option<&'a [u32]> + Sync,
         image: &mut Shaded,
         done: impl Fn() + Sync,
     ) where

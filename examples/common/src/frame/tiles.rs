@@ -18,7 +18,6 @@ pub enum Slicing {
 
 /// Tiles of one size.
 pub struct Tiles {
-    interleave: Interleave,
     subregions: Vec<Subregion>,
 }
 
@@ -115,7 +114,6 @@ impl Tiles {
             Ok(Subregion { grid, depths })
         };
         Ok(Self {
-            interleave: *interleave,
             subregions: (0..interleave.subregions())
                 .into_par_iter()
                 .map(subregion)
@@ -127,12 +125,11 @@ impl Tiles {
         &self.subregions
     }
 
-    /// The tile and the depth interval that hold the surface at `pixel`, which is at `depth`; none for
-    /// sky.
-    pub fn place_of(&self, pixel: [u32; 2], depth: f32) -> Option<Place> {
-        let (subregion, local) = self.interleave.split_pixel(pixel);
-        let Subregion { grid, depths, .. } = &self.subregions[subregion as usize];
-        let tile = grid.tile_of(local);
+    /// The tile and the depth interval that hold the surface at `pixel` of a subregion, which is at `depth`; none
+    /// for sky.
+    pub fn place_of(&self, (subregion, pixel): (u32, [u32; 2]), depth: f32) -> Option<Place> {
+        let Subregion { grid, depths } = &self.subregions[subregion as usize];
+        let tile = grid.tile_of(pixel);
         Some(Place {
             subregion: subregion as usize,
             tile,
