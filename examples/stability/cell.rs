@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use stochastic_light_culling::glam::Vec3;
-use support::adversary::{Bound, Light, Tile, fresnel};
+use support::adversary::{Bound, Light, Reach, Tile, fresnel};
 use support::reference::{Brdf, Masking};
 
 use crate::tally::Tally;

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use fastrand::Rng;
 use rayon::prelude::*;
-use support::adversary::{Light, Tile, log_uniform};
+use support::adversary::{Light, Reach, Tile, log_uniform};
 use support::reference::{Brdf, Fresnel, Masking, Vector, exact::Exact};
 use twofloat::TwoFloat as Real;
 

@@ -1,13 +1,15 @@
-//! Makes the table of the tight bound, and proves that its ellipsoids enclose. Makes the table of linearly
-//! transformed cosines too, and prints its errors.
+//! Makes the table of the tight bound, and proves that its ellipsoids enclose. Makes the tables of clusters and of
+//! linearly transformed cosines too, and prints the errors of the latter.
 //!
 //! ```text
 //! cargo run --release --example tabulate                 # writes src/bound/table.bin
-//! cargo run --release --example tabulate -- --prove      # proves the one that is there, in minutes
+//! cargo run --release --example tabulate -- --prove      # proves those of the tight bound and of clusters, in minutes
+//! cargo run --release --example tabulate -- --cluster    # writes src/bound/cluster.bin
 //! cargo run --release --example tabulate -- --ltc        # writes src/lobe/ltc.bin
 //! cargo run --release --example tabulate -- --ltc-errors # prints the errors of the one that is there, as CSV
 //! ```
 
+mod cluster;
 mod fit;
 mod ltc;
 mod ltc_errors;
@@ -20,7 +22,7 @@ use clap::Parser;
 use common::command::{self, say};
 use common::progress;
 use rayon::prelude::*;
-use support::certificate::{self, Cell};
+use support::certificate::{self, Cell, ClusterCell};
 
 /// The table of smallest ellipsoids behind the tight bound.
 #[derive(Parser)]
@@ -28,11 +30,14 @@ struct Arguments {
     /// Prove the table that is there, instead of making it.
     #[arg(long)]
     prove: bool,
-    /// Make the table of linearly transformed cosines.
+    /// Make the table of ellipsoids around clusters.
     #[arg(long, conflicts_with = "prove")]
+    cluster: bool,
+    /// Make the table of linearly transformed cosines.
+    #[arg(long, conflicts_with_all = ["prove", "cluster"])]
     ltc: bool,
     /// Print how far the linearly transformed cosines are from GGX.
-    #[arg(long, conflicts_with_all = ["prove", "ltc"])]
+    #[arg(long, conflicts_with_all = ["prove", "cluster", "ltc"])]
     ltc_errors: bool,
     /// Boxes after which a cell is given up.
     #[arg(long, default_value_t = 10_000_000)]
@@ -46,6 +51,8 @@ fn main() -> ExitCode {
         } else if arguments.ltc_errors {
             ltc_errors::print();
             Ok(())
+        } else if arguments.cluster {
+            write("src/bound/cluster.bin", &cluster::table())
         } else if arguments.ltc {
             write("src/lobe/ltc.bin", &ltc::table())
         } else {
@@ -76,8 +83,18 @@ fn prove(arguments: &Arguments) -> Result<(), String> {
         })
         .collect();
     bar.finish_and_clear();
-    let boxes: usize = results.iter().filter_map(|r| r.as_ref().ok()).sum();
-    let doubts = results.iter().filter(|r| r.is_err()).count();
+    let of_clusters: Vec<_> = ClusterCell::all()
+        .into_par_iter()
+        .map(|cell| cell.prove(arguments.boxes))
+        .collect();
+    let count = count + of_clusters.len();
+    let boxes = of_clusters.iter().flatten().sum::<usize>()
+        + results.iter().filter_map(|r| r.as_ref().ok()).sum::<usize>();
+    for doubt in of_clusters.iter().filter_map(|r| r.as_ref().err()) {
+        eprintln!("in doubt at √w, √t and height {doubt:?}");
+    }
+    let doubts = results.iter().filter(|r| r.is_err()).count()
+        + of_clusters.iter().filter(|r| r.is_err()).count();
     let seconds = start.elapsed().as_secs();
     say(format_args!(
         "{count} cells, {doubts} in doubt, {boxes} boxes, {seconds} s"

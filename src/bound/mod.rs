@@ -5,6 +5,8 @@
 //! bound is scaled for that frame's ξ and moved to the light ([`Shape`]). Each step rounds outward.
 
 mod anisotropic_ggx;
+mod cluster;
+mod cluster_table;
 mod constant;
 mod cosine_power;
 mod ellipsoid;
@@ -28,6 +30,8 @@ mod table;
 mod tight;
 mod triaxial;
 
+#[cfg(feature = "cull")]
+pub(crate) use cluster::{around_clusters, quads_of_cluster};
 pub use ellipsoid::Ellipsoid;
 pub(crate) use ellipsoid::Ellipsoids;
 pub use half_space::HalfSpace;

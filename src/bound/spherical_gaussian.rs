@@ -108,7 +108,7 @@ fn polynomial<N: Single, const K: usize>(coefficients: [f32; K], w: N) -> N {
 
 /// The ellipsoid around an SG with c = 1 and `sharpness` = λ.
 #[inline(always)]
-fn around_gaussian<N: Single>(sharpness: N) -> Revolved<N> {
+pub(super) fn around_gaussian<N: Single>(sharpness: N) -> Revolved<N> {
     const FRONT: [f32; 4] = [0.3028, -0.1291, -0.1709, 0.084];
     const REAR: [f32; 5] = [-5.4278, 23.6406, -35.9794, 20.754, -0.9873];
     const ACROSS: [f32; 6] = [0.6901, -1.9974, 2.1405, -0.5452, 0.3361, 0.3834];

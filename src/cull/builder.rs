@@ -5,11 +5,11 @@ use glam::Vec3;
 
 use super::LightBatch;
 use super::culler::{at_most, widest};
-use super::group::{BatchInput, Frame, GROUP, Group, KeptBounds, Lights};
+use super::group::{BatchInput, Clusters, Frame, GROUP, Group, KeptBounds, Lights};
 use crate::bound::{BoundStrategy, Bounded};
-use crate::light::{Roulette, Vpl, Xi};
+use crate::light::{Roulette, Vpl, Vsgl, Xi};
 use crate::lobe::Lobe;
-use crate::project::{Project, ProjectedBound};
+use crate::project::{Project, ProjectedBound, ProjectedEllipsoid};
 use crate::view::Camera;
 
 /// Adds the lights of a frame to a [`LightBatch`], for a [`Culler`](crate::Culler).
@@ -97,6 +97,41 @@ impl BatchBuilder {
         let lights = lights.into_iter();
         let lights = lights.map(|(index, light, xi)| (index, (light, xi)));
         self.fill(Lights::bounded_by(strategy), lights, batch);
+    }
+
+    /// Adds clusters of lights, with their [bound](Vsgl::bound).
+    ///
+    /// Each item is the index of a light, which lists will hold, the light, and its ξ in this frame. Clusters may share
+    /// a batch with lights that are bounded by ellipsoids.
+    ///
+    /// ```
+    /// use stochastic_light_culling::{
+    ///     BatchBuilder, Camera, Direction, LightBatch, Roulette, Seed, SphericalGaussian, Vsgl, glam::Vec3,
+    /// };
+    ///
+    /// let lobe = SphericalGaussian::with_integral(Direction::Y, 8.0, 0.5)?;
+    /// let light = |i: u32| Vsgl::new(Vec3::new(i as f32, 0.0, -9.0), 0.3, lobe);
+    /// let lights = (0..100).map(light).collect::<Result<Vec<_>, _>>()?;
+    ///
+    /// let (roulette, seed) = (Roulette::new(0.01)?, Seed(0).frame(7));
+    /// let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0, 1.0, 0.1..100.0)?;
+    /// let mut batch = LightBatch::new();
+    /// let with_xi = (0..).zip(&lights).map(|(i, light)| (i, light, seed.xi(i)));
+    /// BatchBuilder::new(&roulette, &camera).add_vsgls(with_xi, &mut batch);
+    ///
+    /// let (light, ellipsoid) = batch.iter().nth(41).expect("one of a hundred");
+    /// let bound = lights[41].bound(&roulette, seed.xi(41));
+    /// assert_eq!((light, Some(ellipsoid)), (41, bound.project(&camera)));
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
+    pub fn add_vsgls<'a>(
+        &self,
+        lights: impl IntoIterator<Item = (u32, &'a Vsgl, Xi)>,
+        batch: &mut LightBatch<ProjectedEllipsoid>,
+    ) {
+        let lights = lights.into_iter();
+        let lights = lights.map(|(index, light, xi)| (index, (light, xi)));
+        self.fill(Clusters, lights, batch);
     }
 
     /// Adds bounds that are kept from frame to frame.

@@ -10,8 +10,11 @@ use glam::Vec3;
 
 use super::LightBatch;
 use super::lanes::{LANES, Record, mask_of_first, store_records};
-use crate::bound::{BoundStrategy, MAX_QUADS, Quads, Shape, ShapeLanes};
-use crate::light::{Roulette, Vpl, Xi};
+use crate::bound::{
+    BoundStrategy, Ellipsoid, Ellipsoids, MAX_QUADS, Quads, Shape, ShapeLanes, around_clusters,
+    quads_of_cluster,
+};
+use crate::light::{Roulette, Vpl, Vsgl, Xi};
 use crate::lobe::Lobe;
 use crate::num::{F32Lanes, Quad, Real, Single, Vector3, load_quads};
 use crate::project::{Project, Projected};
@@ -37,11 +40,13 @@ pub(super) trait BatchInput: Copy {
     /// The numeric part of an item as quads, and the other part.
     fn to_quads(self, item: Self::Item<'_>) -> (Quads<f32>, Self::PerLight);
 
-    /// The bounds at unit scale of lights at the origin.
+    /// The bounds at unit scale of lights at the origin that will have the scale `scale`, on which the shape may
+    /// depend.
     fn unit_bounds<N: Single>(
         self,
         quads: &Quads<N>,
         per_light: &[Self::PerLight],
+        scale: N,
     ) -> <Self::Shape as Shape>::Lanes<N>;
 
     /// The scales of items with this flux and frame parameter.
@@ -105,6 +110,7 @@ impl<L: Lobe + 'static, B: BoundStrategy<L, Shape: Project>> BatchInput for Ligh
         self,
         quads: &Quads<N>,
         per_light: &[B::PerLight],
+        _: N,
     ) -> <B::Shape as Shape>::Lanes<N> {
         self.0.unit_bounds(quads, per_light)
     }
@@ -112,6 +118,47 @@ impl<L: Lobe + 'static, B: BoundStrategy<L, Shape: Project>> BatchInput for Ligh
     #[inline(always)]
     fn scale<N: Single>(roulette: &Roulette, flux: N, xi: N) -> N {
         roulette.scale_in_lanes(flux, xi)
+    }
+}
+
+/// Clusters of lights.
+#[derive(Clone, Copy)]
+pub(super) struct Clusters;
+
+impl BatchInput for Clusters {
+    type Item<'a> = (&'a Vsgl, Xi);
+    type Shape = Ellipsoid;
+    type PerLight = ();
+
+    const QUADS: usize = 2;
+
+    #[inline(always)]
+    fn may_reach((light, _): (&Vsgl, Xi)) -> bool {
+        !light.lobe().is_empty()
+    }
+
+    #[inline(always)]
+    fn placement((light, xi): (&Vsgl, Xi)) -> Placement {
+        Placement {
+            position: light.position(),
+            flux: light.lobe().amplitude(),
+            parameter: xi.get(),
+        }
+    }
+
+    #[inline(always)]
+    fn to_quads(self, (light, _): (&Vsgl, Xi)) -> (Quads<f32>, ()) {
+        (quads_of_cluster(light), ())
+    }
+
+    #[inline(always)]
+    fn unit_bounds<N: Single>(self, quads: &Quads<N>, _: &[()], scale: N) -> Ellipsoids<N> {
+        around_clusters(quads, scale)
+    }
+
+    #[inline(always)]
+    fn scale<N: Single>(roulette: &Roulette, amplitude: N, xi: N) -> N {
+        roulette.scale_in_lanes(amplitude, xi)
     }
 }
 
@@ -146,7 +193,7 @@ impl<B: Project> BatchInput for KeptBounds<B> {
     }
 
     #[inline(always)]
-    fn unit_bounds<N: Single>(self, quads: &Quads<N>, _: &[()]) -> B::Lanes<N> {
+    fn unit_bounds<N: Single>(self, quads: &Quads<N>, _: &[()], _: N) -> B::Lanes<N> {
         B::from_quads(quads)
     }
 
@@ -261,7 +308,9 @@ impl<I: BatchInput> Group<I> {
         }
         let parameter = flux.load(&self.parameters[lanes.clone()]);
         let scale = I::scale(&frame.roulette, flux, parameter);
-        let unit = self.input.unit_bounds(&quads, &self.per_light[lanes]);
+        let unit = self
+            .input
+            .unit_bounds(&quads, &self.per_light[lanes], scale);
         let reaches = !unit.is_empty() & scale.is_positive();
         let placed = unit.placed(Vector3::new(x, y, z), scale);
         (I::Shape::project_lanes(placed, &frame.camera), reaches)

@@ -9,7 +9,7 @@ use stochastic_light_culling::{
     Roulette, Schlick, Sphere, SphericalGaussian, SpotLobe, TileGrid, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
-use support::adversary::{Light, Tile};
+use support::adversary::{Light, Reach, Tile};
 use support::reference::{self, Brdf, Masking, Vector};
 
 use crate::bits::Bits;

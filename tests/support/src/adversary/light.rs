@@ -11,7 +11,7 @@ use stochastic_light_culling::{
 use twofloat::TwoFloat as Real;
 
 use super::draw::{cone_angles, exponent, fresnel, masking, matrix, sharpness, two_roughnesses};
-use super::{Bound, chance, direction, log_uniform, unit_vector, up_to_one};
+use super::{Bound, Reach, chance, direction, log_uniform, unit_vector, up_to_one};
 use crate::reference::exact::{Exact, value};
 use crate::reference::{Brdf, Fresnel, GivenFresnel, MaskedAlone, Masking, Vector, ltc_rows};
 
@@ -115,37 +115,6 @@ impl Light {
                 first.cross(third.cross(first))
             }
             _ => n * (n.dot(w) * 2.0) - w,
-        }
-    }
-
-    /// l_max = √(Φ f μ_o/(δξ)).
-    pub fn reach(&self, outgoing: Exact) -> Real {
-        let value = value(
-            self.brdf,
-            self.unit_normal(),
-            self.unit_incoming(),
-            outgoing,
-        );
-        let divisor = Real::new_mul(self.delta.into(), self.xi.into());
-        (Real::from(f64::from(self.flux)) / divisor * value).sqrt()
-    }
-
-    /// A direction in which a bound is likely to fail: about the peak, in the plane of incidence and
-    /// across it, at all angles that the lobe's width makes interesting; at grazing; anywhere.
-    pub fn outgoing(&self, rng: &mut Rng) -> Exact {
-        let exact = |v: Vector| Exact(v.0.map(Real::from));
-        let normal = Vector::from(*self.normal);
-        match rng.u8(0..10) {
-            0 => self.peak().unit(),
-            1 => exact(unit_vector(rng)).unit(),
-            3.. if matches!(self.brdf, Brdf::Spot { .. }) => self.in_cones(rng),
-            3..6 if matches!(self.brdf, Brdf::Anisotropic { .. }) => self.mirrored_by_facet(rng),
-            2 => {
-                let tangent = normal.cross(unit_vector(rng));
-                exact(tangent + normal * log_uniform(rng, 1e-8, 1.0)).unit()
-            }
-            3..6 if matches!(self.brdf, Brdf::Ltc { .. }) => self.transformed(rng),
-            _ => self.about_peak(rng),
         }
     }
 
@@ -379,5 +348,42 @@ impl Light {
     fn roulette(&self) -> (Roulette, Xi) {
         let roulette = Roulette::new(self.delta).expect("in the domain");
         (roulette, Xi::new(self.xi).expect("in the domain"))
+    }
+}
+
+impl Reach for Light {
+    fn position(&self) -> Vec3 {
+        self.position
+    }
+
+    /// A direction in which a bound is likely to fail: about the peak, in the plane of incidence and
+    /// across it, at all angles that the lobe's width makes interesting; at grazing; anywhere.
+    fn outgoing(&self, rng: &mut Rng) -> Exact {
+        let exact = |v: Vector| Exact(v.0.map(Real::from));
+        let normal = Vector::from(*self.normal);
+        match rng.u8(0..10) {
+            0 => self.peak().unit(),
+            1 => exact(unit_vector(rng)).unit(),
+            3.. if matches!(self.brdf, Brdf::Spot { .. }) => self.in_cones(rng),
+            3..6 if matches!(self.brdf, Brdf::Anisotropic { .. }) => self.mirrored_by_facet(rng),
+            2 => {
+                let tangent = normal.cross(unit_vector(rng));
+                exact(tangent + normal * log_uniform(rng, 1e-8, 1.0)).unit()
+            }
+            3..6 if matches!(self.brdf, Brdf::Ltc { .. }) => self.transformed(rng),
+            _ => self.about_peak(rng),
+        }
+    }
+
+    /// l_max = √(Φ f μ_o/(δξ)).
+    fn reach(&self, outgoing: Exact) -> Real {
+        let value = value(
+            self.brdf,
+            self.unit_normal(),
+            self.unit_incoming(),
+            outgoing,
+        );
+        let divisor = Real::new_mul(self.delta.into(), self.xi.into());
+        (Real::from(f64::from(self.flux)) / divisor * value).sqrt()
     }
 }

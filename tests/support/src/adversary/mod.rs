@@ -1,18 +1,33 @@
 //! Points that a light reaches, exactly, and the thinnest tiles around them: drawn from the whole
 //! domain, most often from its edges.
 
+mod cluster;
 mod draw;
 mod light;
 mod tile;
 
+pub use cluster::ClusterLight;
 pub use draw::fresnel;
 pub use light::Light;
 pub use tile::Tile;
 
 use fastrand::Rng;
-use stochastic_light_culling::{Direction, Ellipsoid, Sphere, Spheroid, TileTest};
+use stochastic_light_culling::{Direction, Ellipsoid, Sphere, Spheroid, TileTest, glam::Vec3};
+use twofloat::TwoFloat;
 
 use crate::reference::Vector;
+use crate::reference::exact::Exact;
+
+/// A light in one frame, as far as tiles are drawn around it.
+pub trait Reach {
+    fn position(&self) -> Vec3;
+
+    /// A direction in which a bound is likely to fail.
+    fn outgoing(&self, rng: &mut Rng) -> Exact;
+
+    /// The distance up to which it is accepted in a unit direction.
+    fn reach(&self, outgoing: Exact) -> TwoFloat;
+}
 
 /// What the crate encloses a light's range by.
 #[derive(Clone, Copy, Debug)]

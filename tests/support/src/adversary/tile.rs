@@ -9,7 +9,7 @@ use stochastic_light_culling::{
 };
 use twofloat::TwoFloat as Real;
 
-use super::{Light, chance, log_uniform, unit_vector};
+use super::{Reach, chance, log_uniform, unit_vector};
 use crate::reference::Vector;
 use crate::reference::camera::{View, off_centre};
 use crate::reference::exact::{Exact, outward};
@@ -28,7 +28,7 @@ impl Tile {
     ///
     /// `None` if the point drawn lies in a direction that the light does not shine in, or outside the
     /// view.
-    pub fn draw(rng: &mut Rng, light: &Light) -> Option<Self> {
+    pub fn draw(rng: &mut Rng, light: &impl Reach) -> Option<Self> {
         let outgoing = light.outgoing(rng);
         let distance = log_uniform(rng, 1e-3, 1e6);
         // Inside by more than the error of double-double, and by less than anything else here.
@@ -45,7 +45,7 @@ impl Tile {
     /// the eye sees.
     pub fn thin(
         rng: &mut Rng,
-        light: &Light,
+        light: &impl Reach,
         outgoing: Exact,
         inside: f64,
         distance: f64,
@@ -55,7 +55,7 @@ impl Tile {
             return None;
         }
         let way = outgoing * (reach * (1.0 - inside));
-        let start = Exact::from(light.position);
+        let start = Exact::from(light.position());
         let view = draw_view(rng, start + way, reach.hi() * distance);
         let mut seen = (start + way).before(&view);
         let mut depths = outward(seen.0[2]);

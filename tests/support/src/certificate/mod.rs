@@ -15,11 +15,13 @@
 mod angles;
 mod cell;
 mod chain;
+mod cluster;
 mod interval;
 mod lobe;
 mod operators;
 mod over_box;
 mod real;
+mod slopes;
 #[path = "../../../../src/bound/table.rs"]
 #[expect(dead_code, reason = "the crate interpolates between the knots")]
 mod table;
@@ -29,10 +31,12 @@ use std::array::from_fn;
 
 pub use angles::Angles;
 pub use cell::{Box5, Cell};
+pub use cluster::ClusterCell;
 pub use interval::Interval;
 pub use lobe::{Lobe, Point, level, masked};
 pub use over_box::{Parameters, Verdict, root};
 pub use real::Real;
+pub use slopes::{Slopes, prove_positive};
 pub use taylor::Taylor;
 
 use taylor::{PerVariable, VARIABLES};

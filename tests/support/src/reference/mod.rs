@@ -2,6 +2,7 @@
 //! no code with `src/`.
 
 pub mod camera;
+pub mod cluster;
 pub mod exact;
 pub mod fresnel;
 pub mod frustum;
@@ -12,6 +13,7 @@ pub mod smallest;
 pub mod vector;
 
 pub use camera::View;
+pub use cluster::Cluster;
 pub use fresnel::Fresnel;
 pub use frustum::Frustum;
 pub use given::{GivenFresnel, MaskedAlone};
