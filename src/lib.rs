@@ -112,8 +112,9 @@
 //! numbers of the light at q. Then [`touches`](TileTest::touches) and
 //! [`touches_exactly`](TileTest::touches_exactly) are true** of these bounds of the light, projected with
 //! that camera: those that [`Paper`], [`Triaxial`], [`Tight`] and [`Focal`] give, both spheres of a [`Spheroid`], and
-//! the [`HalfSpace`] above the light's surface. Here a direction stands for the vector of exactly unit
-//! length along it, and a point of world space for its exact image under the camera's matrix.
+//! the [`HalfSpace`] above the light's surface. The bound of a [`Vsgl`] keeps it for points where E ≥ δξ. Here a
+//! direction stands for the vector of exactly unit length along it, and a point of world space for its exact image
+//! under the camera's matrix.
 //!
 //! It holds for
 //!
@@ -127,9 +128,10 @@
 //! least 10⁻¹⁸, and the semi-axes of a projected ellipsoid are at least 10⁻³⁰.
 //!
 //! F of a [`Dielectric`] and of a [`Conductor`] is largest at an end of a range of angles, which is proved for
-//! all of their indices. Two bounds rest on more than proofs by hand and counted roundings. The ellipsoids of
+//! all of their indices. Three bounds rest on more than proofs by hand and counted roundings. The ellipsoids of
 //! the table behind [`Tight`], between whose knots it interpolates, are proved to enclose by a computer, box by
-//! box: `examples/tabulate -- --prove`. The ellipsoid of a [`SphericalGaussian`] is proved likewise, by a test.
+//! box: `examples/tabulate -- --prove`. So are those of [`Vsgl::bound`]. The ellipsoid of a [`SphericalGaussian`] is
+//! proved likewise, by a test.
 //!
 //! The cost: at α ≥ 0.01 and ranges of at least 10⁻³ of the distance to the eye and to the origin, the
 //! volume of ellipsoids grows by less than 0.1 % on average; at α = 10⁻⁶ by a large factor.
@@ -227,7 +229,7 @@ pub use bound::{
 #[cfg(feature = "cull")]
 pub use cull::{
     BatchBuilder, BlockEstimates, CullCounters, Culler, Estimate, LightBatch, LightLists,
-    PointBlock, RadianceEstimator, ShadedPoint, ShadingBatch, TileDepths,
+    PointBlock, RadianceEstimator, ShadedLight, ShadedPoint, ShadingBatch, TileDepths,
 };
 #[cfg(feature = "bytemuck")]
 pub use interop::{GpuEllipsoid, GpuSphere};

@@ -171,8 +171,8 @@ fn ellipsoid_is_nearly_the_smallest() {
                     [height, reach * reach - height * height]
                 })
                 .collect();
-            let least = fit::volume(fit::smallest(&points, [1.0, 0.0], -1.0));
-            volume(&light.bound(&roulette, xi)) / least
+            let [front, rear, across] = fit::smallest(&points, [1.0, 0.0], -1.0);
+            volume(&light.bound(&roulette, xi)) / (0.5 * (front + rear) * across)
         });
         println!("{sharpness:9}: {row:6.3?}");
         ratios.extend(row);

@@ -13,7 +13,7 @@ const TILES_PER_LIGHT: usize = 16;
 const BATCH: usize = 4096;
 
 /// Runs `batch` on seeds until as many cases as are wanted are tested, or the share of them.
-fn search(share: u64, batch: impl Fn(u64) -> usize + Sync) {
+fn search(share: u64, batch: impl Fn(u64) -> usize + Sync + Send) {
     let wanted = std::env::var("CASES").map_or(1_000_000, |cases| cases.parse().expect("a number"));
     let batches = wanted / share / BATCH as u64 + 1;
     let tested: usize = (0..batches).into_par_iter().map(batch).sum();

@@ -123,6 +123,25 @@ fn glossy_reflection_against_quadrature() {
     assert!(sums[0][0] < 0.5, "{sums:?}");
 }
 
+/// The tails of the filter are those of the filtered NDF, and so too bright by the quotient of its squared roughness
+/// and the NDF's.
+#[test]
+fn tails_are_too_bright_by_what_the_filter_adds() {
+    let across = Vector([0.0, 1.0, 0.0]);
+    for (roughness, sharpness) in [(0.02, 100.0), (0.02, 1e3), (0.1, 100.0), (0.1, 1e3_f32)] {
+        let axis = in_plane(-0.1).turned(across, 1.0);
+        let ([filter, _], _) = errors(0.1, roughness, sharpness, axis);
+        let squared = f64::from(roughness).powi(2);
+        let expected = 1.0 + (1.0 - squared) / (2.0 * f64::from(sharpness) * squared);
+        let share = (filter + 1.0) / expected;
+        println!(
+            "{roughness} {sharpness}: {:.3} times, {share:.3} of {expected:.3}",
+            filter + 1.0
+        );
+        assert!((0.8..1.05).contains(&share));
+    }
+}
+
 /// At the horizon and beyond it the filter follows, where the ASG is black.
 #[test]
 fn light_below_the_horizon_is_not_lost_by_the_filter() {

@@ -2,155 +2,13 @@
 //! the crate's ellipsoids with them. And it is nearly the smallest, found by search.
 
 use std::f64::consts::FRAC_PI_2;
-use std::ops::{Add, Mul, Sub};
 
 use stochastic_light_culling::{
     Bounded, Direction, Ellipsoid, Focal, SphericalGaussian, glam::Vec3,
 };
+use support::certificate::{Interval, Slopes, prove_positive};
 
-/// All numbers between two. Rounding, 10⁻¹² at most here, is left to the room that the proof leaves.
-#[derive(Clone, Copy, Debug)]
-struct Interval {
-    low: f64,
-    high: f64,
-}
-
-impl Interval {
-    fn point(x: f64) -> Self {
-        Self { low: x, high: x }
-    }
-
-    fn middle(self) -> f64 {
-        0.5 * (self.low + self.high)
-    }
-
-    /// The largest magnitude.
-    fn most(self) -> f64 {
-        self.low.abs().max(self.high.abs())
-    }
-}
-
-impl Add for Interval {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self {
-            low: self.low + other.low,
-            high: self.high + other.high,
-        }
-    }
-}
-
-impl Mul for Interval {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        let products = [
-            self.low * other.low,
-            self.low * other.high,
-            self.high * other.low,
-            self.high * other.high,
-        ];
-        Self {
-            low: products.into_iter().fold(f64::INFINITY, f64::min),
-            high: products.into_iter().fold(f64::NEG_INFINITY, f64::max),
-        }
-    }
-}
-
-/// A function of two variables over a box: its values and both derivatives.
-#[derive(Clone, Copy, Debug)]
-struct Function {
-    value: Interval,
-    slopes: [Interval; 2],
-}
-
-impl Function {
-    fn constant(x: f64) -> Self {
-        Self {
-            value: Interval::point(x),
-            slopes: [Interval::point(0.0); 2],
-        }
-    }
-
-    fn variable(value: Interval, index: usize) -> Self {
-        let mut variable = Self::constant(0.0);
-        variable.value = value;
-        variable.slopes[index] = Interval::point(1.0);
-        variable
-    }
-
-    fn scaled(self, factor: f64) -> Self {
-        self * Self::constant(factor)
-    }
-
-    fn chain(self, value: Interval, slope: Interval) -> Self {
-        Self {
-            value,
-            slopes: self.slopes.map(|inner| inner * slope),
-        }
-    }
-
-    fn squared(self) -> Self {
-        let Interval { low, high } = self.value;
-        let [a, b] = [low * low, high * high];
-        let least = if low <= 0.0 && high >= 0.0 {
-            0.0
-        } else {
-            a.min(b)
-        };
-        let value = Interval {
-            low: least,
-            high: a.max(b),
-        };
-        self.chain(value, self.value + self.value)
-    }
-
-    /// 1/x for x > 0.
-    fn reciprocal(self) -> Self {
-        let value = Interval {
-            low: 1.0 / self.value.high,
-            high: 1.0 / self.value.low,
-        };
-        self.chain(value, value * value * Interval::point(-1.0))
-    }
-
-    fn exponential(self) -> Self {
-        let value = Interval {
-            low: self.value.low.exp(),
-            high: self.value.high.exp(),
-        };
-        self.chain(value, value)
-    }
-}
-
-impl Add for Function {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self {
-            value: self.value + other.value,
-            slopes: std::array::from_fn(|i| self.slopes[i] + other.slopes[i]),
-        }
-    }
-}
-
-impl Sub for Function {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self + other.scaled(-1.0)
-    }
-}
-
-impl Mul for Function {
-    type Output = Self;
-    #[expect(clippy::suspicious_arithmetic_impl, reason = "the product rule")]
-    fn mul(self, other: Self) -> Self {
-        Self {
-            value: self.value * other.value,
-            slopes: std::array::from_fn(|i| {
-                self.slopes[i] * other.value + self.value * other.slopes[i]
-            }),
-        }
-    }
-}
+type Function = Slopes<2>;
 
 /// The share by which the semi-axes are larger than the polynomials say, for the proof.
 const ROOM: f64 = 1e-4;
@@ -176,8 +34,8 @@ fn polynomials(w: Function) -> [Function; 3] {
     let front = Function::constant(1.0) + u * polynomial(&FRONT, w);
     let rear = w.squared().squared() * rear_over_fourth_power(w);
     [
-        (front - rear).scaled(0.5),
-        (front + rear).scaled(0.5),
+        (front - rear) * 0.5,
+        (front + rear) * 0.5,
         polynomial(&ACROSS, w),
     ]
 }
@@ -209,37 +67,11 @@ fn excess_of_narrow(w: Function, t: Function) -> Function {
         - Function::constant((1.0 + ROOM).powi(2))
 }
 
-/// How many boxes it takes to show that `excess` is negative over [x] × [y].
-fn boxes(excess: &impl Fn(Function, Function) -> Function, sides: [Interval; 2]) -> u64 {
-    let mut stack = vec![sides];
-    let mut number = 0;
-    while let Some(sides) = stack.pop() {
-        number += 1;
-        let over =
-            |[x, y]: [Interval; 2]| excess(Function::variable(x, 0), Function::variable(y, 1));
-        let whole = over(sides);
-        let half = sides.map(|side| 0.5 * (side.high - side.low));
-        let change = [0, 1].map(|i| whole.slopes[i].most() * half[i]);
-        let middle = over(sides.map(|side| Interval::point(side.middle())));
-        // By the mean value theorem, or the values themselves.
-        let most = (middle.value.high + change[0] + change[1]).min(whole.value.high);
-        if most < -1e-9 {
-            continue;
-        }
-        assert!(
-            middle.value.high < 0.0 && half[0].max(half[1]) > 1e-7,
-            "the ellipsoid is left at {sides:?}: {}",
-            middle.value.high
-        );
-        let longer = usize::from(change[1] > change[0]);
-        let Interval { low, high } = sides[longer];
-        let middle = 0.5 * (low + high);
-        let mut parts = [sides; 2];
-        parts[0][longer] = Interval { low, high: middle };
-        parts[1][longer] = Interval { low: middle, high };
-        stack.extend(parts);
-    }
-    number
+/// How many boxes it takes to show that `excess` is negative over a box.
+fn boxes(excess: &impl Fn(Function, Function) -> Function, sides: [Interval; 2]) -> usize {
+    let zero = Function::constant(0.0);
+    let gap = |[x, y]: [Function; 2]| [Some(zero - excess(x, y))];
+    prove_positive(sides, 1_000_000, gap).expect("the ellipsoid encloses")
 }
 
 /// The polynomials, enlarged by 10⁻⁴, enclose the isosurface for every λ.
@@ -249,7 +81,7 @@ fn boxes(excess: &impl Fn(Function, Function) -> Function, sides: [Interval; 2])
 /// last product falling with t: 1 + 1.2·10⁻⁴ < (1 + room)².
 #[test]
 fn polynomials_enclose() {
-    let side = |low, high| Interval { low, high };
+    let side = Interval::new;
     let broad = boxes(&excess_of_broad, [side(0.125, 1.0), side(0.0, 2.0)]);
     let narrow = boxes(&excess_of_narrow, [side(0.0, 0.125), side(0.0, 10.5)]);
     println!("{broad} and {narrow} boxes");

@@ -100,11 +100,6 @@ fn w(place: [f64; 2]) -> f64 {
     1.0 / (1.0 + 0.5 * lambda)
 }
 
-/// The volume of an ellipsoid but for a constant.
-pub fn volume([front, rear, across]: Knot) -> f64 {
-    0.5 * (front + rear) * across
-}
-
 /// Points of the surface, in units of R.
 pub fn surface(place: [f64; 2], steps: usize) -> Vec<Point> {
     let [lambda, t] = parameters(place);

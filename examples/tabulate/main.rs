@@ -26,6 +26,7 @@ use support::certificate::{self, Cell, ClusterCell};
 
 /// The table of smallest ellipsoids behind the tight bound.
 #[derive(Parser)]
+#[allow(clippy::struct_excessive_bools, reason = "flags of a command line")]
 struct Arguments {
     /// Prove the table that is there, instead of making it.
     #[arg(long)]
@@ -89,7 +90,10 @@ fn prove(arguments: &Arguments) -> Result<(), String> {
         .collect();
     let count = count + of_clusters.len();
     let boxes = of_clusters.iter().flatten().sum::<usize>()
-        + results.iter().filter_map(|r| r.as_ref().ok()).sum::<usize>();
+        + results
+            .iter()
+            .filter_map(|r| r.as_ref().ok())
+            .sum::<usize>();
     for doubt in of_clusters.iter().filter_map(|r| r.as_ref().err()) {
         eprintln!("in doubt at √w, √t and height {doubt:?}");
     }

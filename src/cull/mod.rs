@@ -59,6 +59,6 @@ pub use builder::BatchBuilder;
 pub use culler::{CullCounters, Culler};
 pub use lists::LightLists;
 pub use shading::{
-    BlockEstimates, Estimate, PointBlock, RadianceEstimator, ShadedPoint, ShadingBatch,
+    BlockEstimates, Estimate, PointBlock, RadianceEstimator, ShadedLight, ShadedPoint, ShadingBatch,
 };
 pub use tile_depths::TileDepths;

@@ -19,5 +19,7 @@ pub use vpl::Vpl;
 #[cfg(feature = "cull")]
 pub(crate) use vpl::unit;
 pub use vsgl::Vsgl;
+#[cfg(feature = "cull")]
+pub(crate) use vsgl::Vsgls;
 pub use window::DistanceWindow;
 pub use xi::{FrameSeed, Seed, Xi};

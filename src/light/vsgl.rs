@@ -1,7 +1,7 @@
 use glam::Vec3;
 
-use crate::base::{Error, finite, number_in};
-use crate::lobe::{Lobe, SphericalGaussian, direction_along, solid_angle};
+use crate::base::{Direction, Error, finite, number_in};
+use crate::lobe::SphericalGaussian;
 use crate::num::{Real, Single, Vector3, exponential, one_minus_exponential};
 
 /// A virtual spherical Gaussian light (VSGL): a cluster of lights, with a spread and a smooth lobe
@@ -100,39 +100,20 @@ impl Vsgl {
     /// the SG is zero everywhere.
     #[must_use]
     pub fn incoming(&self, point: Vec3) -> SphericalGaussian {
-        let arriving = self.lanes().arriving(point.into());
-        let most = f64::from(SphericalGaussian::MAX_SHARPNESS);
-        let sharpness = if arriving.length < most * arriving.spread_squared {
-            arriving.length / arriving.spread_squared
-        } else {
-            most
-        };
-        let integral = arriving.scalar_irradiance;
-        // False for NaN.
-        let amplitude = if integral > 0.0 && point.is_finite() {
-            (integral / solid_angle(sharpness)).min(f32::MAX.into())
-        } else {
-            0.0
-        };
-        SphericalGaussian::of_parts(
-            direction_along(arriving.way, arriving.way.length()).unwrap_or(self.lobe.axis()),
-            sharpness as f32,
-            amplitude as f32,
-        )
+        let incoming = self.lanes().incoming(point.into());
+        let axis = Direction::from_unit(incoming.axis.into());
+        SphericalGaussian::arriving(axis, incoming.sharpness, incoming.scalar_irradiance)
     }
 
     /// The integral E = ∫L_in dω of the [`incoming`](Self::incoming) radiance over all directions, in W/m².
     ///
     /// From afar it is I/l², the radiance of a point light, and a [`Roulette`](crate::Roulette) takes it as the
-    /// intensity of a light at unit distance. It never grows along a way out
-    /// from the centre. At the centre it is c_v(1 − e^{−2λ})/(λσ²), and infinite for σ = 0. Zero if the lobe is
+    /// intensity of a light at unit distance; [`bound`](Self::bound) encloses where it accepts that. It never grows
+    /// along a way out from the centre. At the centre it is c_v(1 − e^{−2λ})/(λσ²), and infinite for σ = 0. Zero if the lobe is
     /// zero, and at points that are not finite. It is computed in double precision, and rounded once.
     #[must_use]
     pub fn scalar_irradiance(&self, point: Vec3) -> f32 {
-        if self.lobe.is_empty() || !point.is_finite() {
-            return 0.0;
-        }
-        self.lanes().arriving(point.into()).scalar_irradiance as f32
+        self.lanes().incoming(point.into()).scalar_irradiance
     }
 
     /// The light as a single lane.
@@ -160,26 +141,24 @@ pub(crate) struct Vsgls<N> {
 
 /// The light that arrives at a point.
 #[derive(Clone, Copy)]
-pub(crate) struct Arriving<D> {
+pub(crate) struct Incoming<N> {
     /// E
-    pub scalar_irradiance: D,
-    /// −(lx + Aξ_v), along which it comes.
-    pub way: Vector3<D>,
-    /// T, the length of that in exact arithmetic.
-    pub length: D,
-    /// σ²
-    pub spread_squared: D,
+    pub scalar_irradiance: N,
+    /// The direction that it comes from.
+    pub axis: Vector3<N>,
+    pub sharpness: N,
 }
 
 impl<N: Single> Vsgls<N> {
-    /// E = c exp(−2λq/(T + l² + A)) (1 − e^{−2T/σ²})/T with A = λσ² and T = ‖lx + Aξ‖.
+    /// E = c exp(−2λq/(T + l² + A)) (1 − e^{−2T/σ²})/T with A = λσ² and T = ‖lx + Aξ‖. The light comes along
+    /// −(lx + Aξ) with the sharpness T/σ².
     ///
     /// This is c/(2πσ²) times the integral of the product of the SGs about ξ and x, of the sharpness λ and
     /// l²/σ², in a form without differences: with c = cosθ, T² = (l² − A)² + 2Al²(1 + c), and
     /// T − l² − A = −2Aq/(T + l² + A), q = l²(1 − c). Of 1 ± c the one that would cancel is ρ²/(l² ∓ lz), where
     /// z = lc and ρ is the distance from the axis.
     #[inline(always)]
-    pub fn arriving(&self, point: Vector3<N>) -> Arriving<N::Double> {
+    pub fn incoming(&self, point: Vector3<N>) -> Incoming<N> {
         let axis = self.axis.widen();
         let axis = axis / axis.length();
         let x = point.widen() - self.position.widen();
@@ -192,6 +171,8 @@ impl<N: Single> Vsgls<N> {
         let rim = x.cross(axis).length_squared();
         // l − |z| without cancellation; 0/0 at the centre.
         let least = squared.splat(f64::MIN_POSITIVE);
+        // A square below the normal range would lose the direction.
+        let least_length = squared.splat(1e-150);
         let sum = length + height.abs();
         let rest = rim / sum.max(least);
         let is_ahead = height.is_positive();
@@ -204,11 +185,19 @@ impl<N: Single> Vsgls<N> {
         let exponent = -(lambda * 2.0 * q / (t + squared + a));
         let y = t * 2.0 / spread_squared.max(least);
         let value = self.amplitude.widen() * exponential(exponent) * one_minus_exponential(y) / t;
-        Arriving {
-            scalar_irradiance: value,
-            way: -(x * length + axis * a),
-            length: t,
-            spread_squared,
+        // Zero at points that are not finite.
+        let value = <N::Double as Real>::select(squared.is_finite(), value, squared.zero());
+        let way = -(x * length + axis * a);
+        let way_length = way.length();
+        let has_way = way_length.gt(least_length) & way_length.is_finite();
+        let way = Vector3::select(has_way, way / way_length, axis);
+        let most = squared.splat(SphericalGaussian::MAX_SHARPNESS.into());
+        let is_less_sharp = (most * spread_squared).gt(t);
+        let sharpness = <N::Double as Real>::select(is_less_sharp, t / spread_squared, most);
+        Incoming {
+            scalar_irradiance: N::narrow(value),
+            axis: Vector3::narrow(way),
+            sharpness: N::narrow(sharpness),
         }
     }
 }

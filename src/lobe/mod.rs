@@ -44,7 +44,7 @@ pub use ltc_lobe::LtcLobe;
 pub use masking::{HeightCorrelated, MaskingShadowing, Separable};
 pub use phong::PhongLobe;
 pub use spherical_gaussian::SphericalGaussian;
-pub(crate) use spherical_gaussian::{direction_along, solid_angle, toksvig};
+pub(crate) use spherical_gaussian::{solid_angle, toksvig};
 pub use spot::SpotLobe;
 
 use glam::Vec3;

@@ -3,11 +3,11 @@
 use core::f64::consts::{FRAC_1_PI, PI};
 
 use super::{
-    AnisotropicGgx, AnisotropicSphericalGaussian, Fresnel, GgxLobe, Incidence, LambertLobe, Lobe,
-    MaskingShadowing, SphericalGaussian, unit,
+    AnisotropicGgx, AnisotropicSphericalGaussian, Fresnel, GgxLobe, GgxLobes, Incidence,
+    LambertLobe, Lobe, MaskingShadowing, SphericalGaussian, unit,
 };
 use crate::base::Direction;
-use crate::num::{Vector3, exponential, sqrt_f64};
+use crate::num::{Double, Real, Single, Vector3, exponential};
 
 impl SphericalGaussian {
     /// The share of the integral that lies above the horizon of `normal`, approximately: in \[0, 1\], and off by
@@ -17,18 +17,21 @@ impl SphericalGaussian {
     /// and has the slope of the share at c = 0 for λ → 0 and for λ → ∞.
     #[must_use]
     pub fn share_above(&self, normal: Direction) -> f32 {
-        self.share_above_plane(unit(Vector3::from(normal))) as f32
+        let cosine = unit(Vector3::from(self.axis())).dot(unit(Vector3::from(normal)));
+        share_above(f64::from(self.sharpness()), cosine) as f32
     }
+}
 
-    fn share_above_plane(&self, normal: Vector3<f64>) -> f64 {
-        let lambda = f64::from(self.sharpness());
-        let cosine = unit(Vector3::from(self.axis())).dot(normal);
-        let square = (cosine * cosine).min(1.0);
-        let x = lambda * cosine * (square + (1.0 - square) / sqrt_f64(1.0 + lambda * (PI / 8.0)));
-        let power = exponential(-x.abs());
-        let least = power / (1.0 + power);
-        if x < 0.0 { least } else { 1.0 - least }
-    }
+/// The share of SGs with `sharpness` = λ above planes to whose normals their axes have the `cosine`.
+#[inline(always)]
+fn share_above<D: Double>(sharpness: D, cosine: D) -> D {
+    let one = cosine.splat(1.0);
+    let square = (cosine * cosine).min(one);
+    let spread = (sharpness * (PI / 8.0) + 1.0).sqrt();
+    let x = sharpness * cosine * (square + (one - square) / spread);
+    let power = exponential(-x.abs());
+    let least = power / (power + 1.0);
+    D::select(x.is_positive(), one - least, least)
 }
 
 impl LambertLobe {
@@ -62,51 +65,22 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
     ///
     /// It is positive and finite for every SG but one from straight behind the viewer. For λ ≥ 10 and viewers
     /// up to 0.8 radians off the normal it is within 40 % of the integral, where that is at least a third of
-    /// its largest over all axes. For λ → ∞ it is the lobe's value but for shadowing. In the tails, which are far darker,
-    /// it is mostly too bright: by a factor of several, and near grazing incidence for narrow lobes of up to a
-    /// hundred. `tests/reflected_gaussian.rs` prints the table. It does not depend on the masking function.
+    /// its largest over all axes. For λ → ∞ it is the lobe's value but for shadowing. The tails, which are far
+    /// darker, are too bright, and this is the method's own error: a Gaussian has no tails, so that those of the
+    /// exact integral are the NDF's, in proportion to α′² = α²/(1−α²), but the filtered NDF has tails in proportion
+    /// to its own squared roughness, α′² + 1/(2λ) for a viewer on the normal. That is too bright by a factor of
+    /// 1 + 1/(2λα′²), and near grazing incidence by up to a hundred. `tests/reflected_gaussian.rs` prints the table.
+    /// The result does not depend on the masking function.
     /// Zero if the lobe is empty.
     #[must_use]
     pub fn product_integral(&self, gaussian: &SphericalGaussian) -> f32 {
-        if self.is_empty() {
-            return 0.0;
-        }
-        let normal = unit(Vector3::from(self.normal()));
-        let view = unit(Vector3::from(self.incoming()));
-        let light = unit(Vector3::from(gaussian.axis()));
-        let cosine = f64::from(self.incident_cosine());
-        let lambda = f64::from(gaussian.sharpness());
-        let alpha = f64::from(self.ggx().roughness());
-        let alpha_squared = alpha * alpha;
-        let of_ndf = alpha_squared / (1.0 - alpha_squared).max(1e-7);
-        let of_light = 0.5 / lambda.max(1e-9);
-        // P/(1+P) for the directions in and across the plane of incidence; both finite.
-        let filtered = [of_light, of_light / (cosine * cosine)].map(|of_light| {
-            let sum = of_ndf + of_light;
-            1.0 / (1.0 + 1.0 / sum)
-        });
-        let half = view + light;
-        let length_squared = half.length_squared();
-        // Light from behind the surface, opposite to the viewer, has no half vector.
-        if length_squared < 1e-14 {
-            return 0.0;
-        }
-        let across = normal.cross(view);
-        let sine_squared = across.length_squared();
-        let across = if sine_squared > 1e-24 {
-            across / sqrt_f64(sine_squared)
-        } else {
-            let (_, across) = Vector3::from(self.normal()).any_orthonormal_pair();
-            across.widen()
-        };
-        let [x, y, z] = [across.cross(normal), across, normal].map(|axis| axis.dot(half));
-        let spread = (x * x / filtered[0] + y * y / filtered[1] + z * z) / length_squared;
-        let ndf = FRAC_1_PI / (sqrt_f64(filtered[0] * filtered[1]) * spread * spread);
-        let root = sqrt_f64(filtered[0] * sine_squared + cosine * cosine);
-        let half_cosine = (0.5 * sqrt_f64(length_squared)).min(1.0);
-        let fresnel = f64::from(self.fresnel().reflectance(half_cosine as f32));
-        let share = gaussian.share_above_plane(normal);
-        finite(f64::from(gaussian.integral()) * share * fresnel * ndf / (4.0 * root))
+        let share = self.lanes().mean_over_gaussians(
+            #[inline(always)]
+            |cosine| self.fresnel().reflectance(cosine),
+            gaussian.axis().into(),
+            gaussian.sharpness(),
+        );
+        finite(f64::from(gaussian.integral()) * f64::from(share))
     }
 
     /// Approximates ∫ v(ω) g(ω) dω as [`product_integral`](Self::product_integral) does, by the ASG that
@@ -143,6 +117,51 @@ impl<F: Fresnel, G: MaskingShadowing> GgxLobe<F, G> {
         lobe.map_or(0.0, |lobe| {
             finite(constant * f64::from(lobe.product_integral(gaussian)))
         })
+    }
+}
+
+impl<N: Single> GgxLobes<N> {
+    /// [`GgxLobe::product_integral`] with SGs of unit integral, where `reflectance` is F as a function of cosθ_h.
+    #[inline(always)]
+    pub fn mean_over_gaussians(
+        &self,
+        reflectance: impl FnOnce(N) -> N,
+        axis: Vector3<N>,
+        sharpness: N,
+    ) -> N {
+        let [normal, view, light] = [self.normal, self.incoming, axis].map(unit);
+        let (cosine, lambda) = (self.incident_cosine.widen(), sharpness.widen());
+        let (zero, one) = (cosine.zero(), cosine.splat(1.0));
+        let alpha = self.roughness.widen();
+        let alpha_squared = alpha * alpha;
+        let of_ndf = alpha_squared / (one - alpha_squared).max(cosine.splat(1e-7));
+        let of_light = one * 0.5 / lambda.max(cosine.splat(1e-9));
+        // P/(1+P) for the directions in and across the plane of incidence; both finite.
+        let filtered = [of_light, of_light / (cosine * cosine)]
+            .map(|of_light| one / (one / (of_ndf + of_light) + 1.0));
+        let half = view + light;
+        let length_squared = half.length_squared();
+        let across = normal.cross(view);
+        let sine_squared = across.length_squared();
+        let (_, arbitrary) = self.normal.any_orthonormal_pair();
+        let across = Vector3::select(
+            sine_squared.gt(one * 1e-24),
+            across / sine_squared.sqrt(),
+            arbitrary.widen(),
+        );
+        let [x, y, z] = [across.cross(normal), across, normal].map(|axis| axis.dot(half));
+        let spread = (x * x / filtered[0] + y * y / filtered[1] + z * z) / length_squared;
+        let ndf = one * FRAC_1_PI / ((filtered[0] * filtered[1]).sqrt() * spread * spread);
+        let root = (filtered[0] * sine_squared + cosine * cosine).sqrt();
+        let half_cosine = (length_squared.sqrt() * 0.5).min(one);
+        let fresnel = reflectance(N::narrow(half_cosine)).widen();
+        let share = share_above(lambda, light.dot(normal));
+        let mean = share * fresnel * ndf / (root * 4.0);
+        // Light from behind the surface, opposite to the viewer, has no half vector.
+        let has_half = length_squared.gt(one * 1e-14);
+        let is_lit = self.incident_cosine.is_positive() & has_half;
+        let mean = <N::Double as Real>::select(is_lit, mean.max(zero), zero);
+        N::narrow(mean.min(cosine.splat(f32::MAX.into())))
     }
 }
 

@@ -188,6 +188,14 @@ impl SphericalGaussian {
         }
     }
 
+    /// The light that arrives from `axis` with the integral `irradiance`, which is not NaN. An amplitude above the
+    /// largest `f32` is that.
+    #[inline]
+    pub(crate) fn arriving(axis: Direction, sharpness: f32, irradiance: f32) -> Self {
+        let amplitude = f64::from(irradiance) / solid_angle(f64::from(sharpness));
+        Self::of_parts(axis, sharpness, amplitude.min(f32::MAX.into()) as f32)
+    }
+
     /// The axis ξ.
     #[must_use]
     pub fn axis(&self) -> Direction {

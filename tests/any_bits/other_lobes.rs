@@ -5,8 +5,9 @@ use std::hint::black_box;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicSphericalGaussian, Bounded, Camera, ClusterSums, ConstantLobe,
     DepthInterval, DistanceWindow, FilteredSampling, Fresnel, FresnelMajorant, Ggx, GgxLobe,
-    Incidence, LambertLobe, Lobe, MipPyramid, NoFresnel, Paper, PhongLobe, Proxy, Roulette, Seed,
-    SphericalGaussian, SpotLobe, Tight, TileRectangle, Triaxial, Vpl, Vsgl, Xi, glam::Vec3,
+    Incidence, LambertLobe, Lobe, MipPyramid, NoFresnel, Paper, PhongLobe, Proxy,
+    RadianceEstimator, Roulette, Seed, ShadedPoint, ShadingBatch, SphericalGaussian, SpotLobe,
+    Tight, TileRectangle, Triaxial, Vpl, Vsgl, Xi, glam::Vec3,
 };
 
 use crate::bits::Bits;
@@ -128,6 +129,7 @@ fn gaussians(bits: &mut Bits, cameras: &[Camera]) {
             assert!(light.scalar_irradiance(point) >= 0.0);
             probe::direction(light.incoming(point).axis());
             assert!(light.incoming(point).integral() >= 0.0);
+            cluster(bits, &light, cameras);
         }
         let sums = ClusterSums::of_light(
             bits.vector(),
@@ -145,6 +147,28 @@ fn gaussians(bits: &mut Bits, cameras: &[Camera]) {
         probe::saved(&lobe);
         probe::light(lobe, cameras);
     }
+}
+
+/// A cluster, bounded and evaluated.
+fn cluster(bits: &mut Bits, light: &Vsgl, cameras: &[Camera]) {
+    let (Ok(roulette), Ok(xi)) = (Roulette::new(bits.number()), Xi::new(bits.number())) else {
+        return;
+    };
+    probe::ellipsoid(&light.bound(&roulette, xi), cameras);
+    let mut batch = ShadingBatch::new();
+    batch.push_vsgl(light, xi);
+    let (position, normal) = (bits.vector(), bits.vector());
+    let points = [
+        ShadedPoint { position, normal },
+        light.position().into(),
+        Vec3::ZERO.into(),
+    ];
+    let lists = points.iter().map(|point| (*point, &[0][..]));
+    RadianceEstimator::new(&roulette).at_points(&batch, lists, |_, estimate| {
+        assert!(estimate.radiance > 0.0 && estimate.sharpness >= 0.0);
+        probe::direction(estimate.incoming().axis());
+        assert!(estimate.incoming().integral() >= 0.0);
+    });
 }
 
 /// A map with the light in some of its texels, and clusters of it.

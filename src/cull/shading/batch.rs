@@ -1,7 +1,8 @@
 use alloc::vec::Vec;
 
+use super::kernel::ShadedLight;
 use crate::cull::lanes::{LANES, Record};
-use crate::light::{Vpl, Xi};
+use crate::light::{Vpl, Vsgl, Xi};
 use crate::lobe::{FIRST_NUMBERS, Lobe};
 
 /// The numbers in a line of a light.
@@ -11,7 +12,8 @@ pub(super) const LOBE: usize = 4;
 /// Where in the first line ξ is.
 pub(super) const XI: usize = LOBE + FIRST_NUMBERS;
 
-/// The lights of a frame with their ξ, ready for a [`RadianceEstimator`](crate::RadianceEstimator).
+/// The lights of a frame with their ξ, ready for a [`RadianceEstimator`](crate::RadianceEstimator): lights
+/// [`Vpl`] with lobes of type `L`, or clusters, if `L` is [`Vsgl`].
 ///
 /// A light has the index of its turn: the first that is pushed has index 0. It takes 64 bytes, or 128 with an
 /// [`AnisotropicGgxLobe`](crate::AnisotropicGgxLobe). A lobe that is evaluated light by light, that of a
@@ -36,7 +38,7 @@ pub struct ShadingBatch<L> {
     pub(super) lobes: Vec<L>,
 }
 
-impl<L: Lobe> ShadingBatch<L> {
+impl<L: ShadedLight> ShadingBatch<L> {
     /// Creates an empty batch.
     #[must_use]
     pub const fn new() -> Self {
@@ -48,11 +50,7 @@ impl<L: Lobe> ShadingBatch<L> {
 
     #[inline(always)]
     pub(super) fn lines_per_light() -> usize {
-        if L::numbers_in_use() > FIRST_NUMBERS {
-            2
-        } else {
-            1
-        }
+        L::lines()
     }
 
     /// The number of lights.
@@ -113,7 +111,7 @@ impl<L: Lobe + Clone> ShadingBatch<L> {
     }
 }
 
-impl<L: Lobe> Default for ShadingBatch<L> {
+impl<L: ShadedLight> Default for ShadingBatch<L> {
     fn default() -> Self {
         Self::new()
     }
@@ -126,6 +124,32 @@ impl<'a, L: Lobe + Clone + 'a> Extend<(&'a Vpl<L>, Xi)> for ShadingBatch<L> {
             .reserve(lights.size_hint().0 * Self::lines_per_light());
         for (light, xi) in lights {
             self.push(light, xi);
+        }
+    }
+}
+
+/// Clusters of lights.
+impl ShadingBatch<Vsgl> {
+    /// Adds a cluster with its ξ in this frame. It takes 64 bytes. Allocates only if the batch must grow.
+    #[inline]
+    pub fn push_vsgl(&mut self, light: &Vsgl, xi: Xi) {
+        let (p, lobe) = (light.position(), light.lobe());
+        let axis = lobe.axis();
+        let mut line = [0.0; LINE];
+        line[..LOBE].copy_from_slice(&[p.x, p.y, p.z, lobe.amplitude()]);
+        let numbers = [axis.x, axis.y, axis.z, lobe.sharpness(), light.spread()];
+        line[LOBE..LOBE + numbers.len()].copy_from_slice(&numbers);
+        line[XI] = xi.get();
+        self.lines.push(Record(line));
+    }
+}
+
+impl<'a> Extend<(&'a Vsgl, Xi)> for ShadingBatch<Vsgl> {
+    fn extend<I: IntoIterator<Item = (&'a Vsgl, Xi)>>(&mut self, lights: I) {
+        let lights = lights.into_iter();
+        self.lines.reserve(lights.size_hint().0);
+        for (light, xi) in lights {
+            self.push_vsgl(light, xi);
         }
     }
 }

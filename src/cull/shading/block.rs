@@ -4,10 +4,9 @@ use fearless_simd::{Simd, SimdBase};
 use glam::Vec3;
 
 use super::batch::ShadingBatch;
-use super::kernel::{Frame, Lights, Points, evaluate};
+use super::kernel::{Frame, Lights, Points, ShadedLight};
 use super::point::{Estimate, ShadedPoint};
 use crate::cull::lanes::{LANES, Lanes, load, parts, store};
-use crate::lobe::Lobe;
 use crate::num::{F32Lanes, Vector3};
 
 /// Up to sixteen points, an array for each coordinate.
@@ -101,6 +100,8 @@ pub struct BlockEstimates {
     pub distance_squared: [f32; PointBlock::LEN],
     /// The x, y and z of the direction from the light to each point.
     pub direction: [[f32; PointBlock::LEN]; 3],
+    /// The sharpness of the light as it arrives at each point: infinite from point lights.
+    pub sharpness: [f32; PointBlock::LEN],
     /// The index of the light.
     pub light: u32,
     /// Bit i is set if point i accepts the light.
@@ -113,6 +114,7 @@ impl BlockEstimates {
         intensity: [0.0; LANES],
         distance_squared: [0.0; LANES],
         direction: [[0.0; LANES]; 3],
+        sharpness: [f32::INFINITY; LANES],
         light: 0,
         accepted: 0,
     };
@@ -134,13 +136,14 @@ impl BlockEstimates {
             intensity: self.intensity[i],
             distance_squared: self.distance_squared[i],
             direction: Vec3::new(x[i], y[i], z[i]),
+            sharpness: self.sharpness[i],
         }
     }
 }
 
 /// Calls `each` with the lights of `list` that a point of `block` accepts, in the order of the list.
 #[inline(always)]
-pub(super) fn evaluate_block<S: Simd, L: Lobe>(
+pub(super) fn evaluate_block<S: Simd, L: ShadedLight>(
     simd: S,
     frame: &Frame,
     lights: &ShadingBatch<L>,
@@ -156,7 +159,7 @@ pub(super) fn evaluate_block<S: Simd, L: Lobe>(
         for part in 0..parts::<S>() {
             let lobe = lights.lobes.get(*light as usize);
             let points = block.part(simd, part);
-            let evaluated = evaluate::<S, L>(
+            let evaluated = L::evaluate(
                 frame,
                 &splat,
                 #[inline(always)]
@@ -180,6 +183,9 @@ pub(super) fn evaluate_block<S: Simd, L: Lobe>(
             let Vector3 { x, y, z } = evaluated.direction;
             for (lanes, vector) in estimates.direction.iter_mut().zip([x, y, z]) {
                 store(lanes, part, vector);
+            }
+            if let Some(sharpness) = evaluated.sharpness {
+                store(&mut estimates.sharpness, part, sharpness);
             }
         }
         if estimates.accepted != 0 {

@@ -2,13 +2,12 @@ use fearless_simd::{Level, dispatch};
 
 use super::batch::ShadingBatch;
 use super::block::{BlockEstimates, PointBlock, evaluate_block};
-use super::kernel::Frame;
+use super::kernel::{Frame, ShadedLight};
 use super::pairs::fold_pairs;
 use super::point::{Estimate, ShadedPoint};
 use crate::base::{Error, number_in};
 use crate::cull::culler::{at_most, widest};
 use crate::light::Roulette;
-use crate::lobe::Lobe;
 
 /// Evaluates lists of lights, many at a time: acceptance, and the estimate of the radiance, of each light.
 ///
@@ -17,6 +16,8 @@ use crate::lobe::Lobe;
 /// [`Vpl::direction_to`](crate::Vpl::direction_to). They come in the order of the list, and do not depend on
 /// the width of the vectors. Lights that are not accepted are not reported, so that visibility and what the
 /// surface does with the light are computed for the others alone.
+///
+/// Clusters ([`Vsgl`](crate::Vsgl)) are evaluated alike: an [`Estimate`] says what of.
 ///
 /// There are two ways. Where points share a list, as those of a tile do, [`at_block`](Self::at_block) takes
 /// sixteen of them and is fastest. [`at_points`](Self::at_points) takes points with lists of their own, however
@@ -94,7 +95,7 @@ impl RadianceEstimator {
     /// Returns this estimator with squared distances taken to be at least `least`, in the squared unit of
     /// length. It keeps virtual lights, which stand for a patch of a surface, from becoming brighter than the
     /// patch. Directions do not change. The range of a light shrinks where it was smaller, so bounds stay
-    /// valid.
+    /// valid. Clusters, whose light stays finite by their spread, are not changed.
     ///
     /// # Errors
     ///
@@ -130,7 +131,7 @@ impl RadianceEstimator {
     ///
     /// If `list` holds an index of no light.
     #[inline]
-    pub fn at_block<L: Lobe>(
+    pub fn at_block<L: ShadedLight>(
         &self,
         lights: &ShadingBatch<L>,
         list: &[u32],
@@ -150,7 +151,7 @@ impl RadianceEstimator {
     ///
     /// If a list holds an index of no light.
     #[inline]
-    pub fn at_points<'l, L: Lobe>(
+    pub fn at_points<'l, L: ShadedLight>(
         &self,
         lights: &ShadingBatch<L>,
         points: impl IntoIterator<Item = (ShadedPoint, &'l [u32])>,
@@ -187,7 +188,7 @@ impl RadianceEstimator {
     ///
     /// If a list holds an index of no light.
     #[inline]
-    pub fn fold_at_points<'l, L: Lobe, A>(
+    pub fn fold_at_points<'l, L: ShadedLight, A>(
         &self,
         lights: &ShadingBatch<L>,
         points: impl IntoIterator<Item = (ShadedPoint, &'l [u32])>,

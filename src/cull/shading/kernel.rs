@@ -10,17 +10,17 @@ use crate::num::{F32Lanes, Real, Vector3};
 
 /// What all evaluations of a frame share.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    pub roulette: Roulette,
-    pub least_distance_squared: f32,
+pub struct Frame {
+    pub(super) roulette: Roulette,
+    pub(super) least_distance_squared: f32,
 }
 
 /// A light in each lane, without what its lobe has besides numbers.
-pub(super) struct Lights<N> {
-    position: Vector3<N>,
-    flux: N,
-    xi: N,
-    numbers: LobeNumbers<N>,
+pub struct Lights<N> {
+    pub(super) position: Vector3<N>,
+    pub(super) flux: N,
+    pub(super) xi: N,
+    pub(super) numbers: LobeNumbers<N>,
 }
 
 impl<S: Simd> Lights<F32Lanes<S>> {
@@ -40,7 +40,7 @@ impl<S: Simd> Lights<F32Lanes<S>> {
 
     /// The same light in each lane.
     #[inline(always)]
-    pub fn broadcast<L: Lobe>(simd: S, batch: &ShadingBatch<L>, light: u32) -> Self {
+    pub fn broadcast<L: ShadedLight>(simd: S, batch: &ShadingBatch<L>, light: u32) -> Self {
         let lines = ShadingBatch::<L>::lines_per_light();
         let stored = &batch.lines[ShadingBatch::<L>::first_line(light)..][..lines];
         let mut vectors = [[F32Lanes::new(simd, 0.0); LINE]; 2];
@@ -54,7 +54,7 @@ impl<S: Simd> Lights<F32Lanes<S>> {
 
     /// The lights with the first of `indices`, one in each lane.
     #[inline(always)]
-    pub fn gathered<L: Lobe>(simd: S, batch: &ShadingBatch<L>, indices: &[u32]) -> Self {
+    pub fn gathered<L: ShadedLight>(simd: S, batch: &ShadingBatch<L>, indices: &[u32]) -> Self {
         let mut vectors = [[F32Lanes::new(simd, 0.0); LINE]; 2];
         let lines = ShadingBatch::<L>::lines_per_light();
         for (line, vectors) in vectors[..lines].iter_mut().enumerate() {
@@ -70,20 +70,66 @@ impl<S: Simd> Lights<F32Lanes<S>> {
 
 /// A point in each lane.
 #[derive(Clone, Copy)]
-pub(super) struct Points<N> {
-    pub position: Vector3<N>,
-    pub normal: Vector3<N>,
+pub struct Points<N> {
+    pub(super) position: Vector3<N>,
+    pub(super) normal: Vector3<N>,
 }
 
 /// A light's estimate at a point in each lane.
-pub(super) struct Evaluated<S: Simd> {
+pub struct Evaluated<S: Simd> {
     /// The bits of the lanes in which the light is accepted; at least one.
-    pub accepted: u32,
+    pub(super) accepted: u32,
     /// Zero where the light is not accepted.
-    pub radiance: F32Lanes<S>,
-    pub intensity: F32Lanes<S>,
-    pub distance_squared: F32Lanes<S>,
-    pub direction: Vector3<F32Lanes<S>>,
+    pub(super) radiance: F32Lanes<S>,
+    pub(super) intensity: F32Lanes<S>,
+    pub(super) distance_squared: F32Lanes<S>,
+    pub(super) direction: Vector3<F32Lanes<S>>,
+    /// `None` for point lights, where it is infinite.
+    pub(super) sharpness: Option<F32Lanes<S>>,
+}
+
+/// What the lights of a [`ShadingBatch`](crate::ShadingBatch) are: a [`Lobe`], for the lights [`Vpl`](crate::Vpl)
+/// with such a lobe, or [`Vsgl`](crate::Vsgl).
+pub trait ShadedLight: Sized {
+    /// The lines of numbers that a light takes.
+    #[doc(hidden)]
+    fn lines() -> usize;
+
+    /// Evaluates a light at a point in each lane. `None` if no lane accepts it. `kept_of` gives what is kept of a
+    /// lane's light beside its numbers.
+    #[doc(hidden)]
+    fn evaluate<'a, S: Simd>(
+        frame: &Frame,
+        lights: &Lights<F32Lanes<S>>,
+        kept_of: impl Fn(usize) -> Option<&'a Self>,
+        points: &Points<F32Lanes<S>>,
+    ) -> Option<Evaluated<S>>
+    where
+        Self: 'a;
+}
+
+impl<L: Lobe> ShadedLight for L {
+    #[inline(always)]
+    fn lines() -> usize {
+        if L::numbers_in_use() > FIRST_NUMBERS {
+            2
+        } else {
+            1
+        }
+    }
+
+    #[inline(always)]
+    fn evaluate<'a, S: Simd>(
+        frame: &Frame,
+        lights: &Lights<F32Lanes<S>>,
+        lobe_of: impl Fn(usize) -> Option<&'a Self>,
+        points: &Points<F32Lanes<S>>,
+    ) -> Option<Evaluated<S>>
+    where
+        Self: 'a,
+    {
+        evaluate(frame, lights, lobe_of, points)
+    }
 }
 
 /// The square (16u)² of the sine below the horizon from which on rounding cannot lift a point above it.
@@ -97,7 +143,7 @@ const LEAST_DARK_SQUARE: f32 = 1e-30;
 /// Direction, intensity and acceptance are those of scalar code. Where every lane is dark, because the light
 /// faces away or is below the point's horizon, there is neither a root nor a division.
 #[inline(always)]
-pub(super) fn evaluate<'a, S: Simd, L: Lobe + 'a>(
+fn evaluate<'a, S: Simd, L: Lobe + 'a>(
     frame: &Frame,
     lights: &Lights<F32Lanes<S>>,
     lobe_of: impl Fn(usize) -> Option<&'a L>,
@@ -133,5 +179,6 @@ pub(super) fn evaluate<'a, S: Simd, L: Lobe + 'a>(
         intensity,
         distance_squared,
         direction,
+        sharpness: None,
     })
 }

@@ -3,13 +3,15 @@
 //! [`ShadingBatch`] holds a line of 64 bytes for each light. [`RadianceEstimator`] evaluates a list of lights
 //! in one of two ways (`estimator`). For the points of a tile, a light's line is broadcast, and a vector holds
 //! one point in each lane (`block`). For points with lists of their own, a vector holds a light and a point in
-//! each lane, and as many lines are transposed (`pairs`). Both call one function (`kernel`).
+//! each lane, and as many lines are transposed (`pairs`). Both call one function (`kernel`, and `cluster` for
+//! clusters of lights).
 //!
 //! Direction, lobe and roulette are the generic functions that scalar code runs, so that estimates have the
 //! same bits.
 
 mod batch;
 mod block;
+mod cluster;
 mod estimator;
 mod kernel;
 mod pairs;
@@ -18,4 +20,5 @@ mod point;
 pub use batch::ShadingBatch;
 pub use block::{BlockEstimates, PointBlock};
 pub use estimator::RadianceEstimator;
+pub use kernel::ShadedLight;
 pub use point::{Estimate, ShadedPoint};

@@ -5,10 +5,9 @@ use glam::Vec3;
 
 use super::batch::ShadingBatch;
 use super::block::BlockEstimates;
-use super::kernel::{Frame, Lights, Points, evaluate};
+use super::kernel::{Frame, Lights, Points, ShadedLight};
 use super::point::{Estimate, ShadedPoint};
 use crate::cull::lanes::{LANES, store};
-use crate::lobe::Lobe;
 use crate::num::{F32Lanes, Vector3};
 
 /// As many lights of a list are copied at once.
@@ -70,7 +69,7 @@ impl<S: Simd> Pairs<S> {
 
     /// Evaluates the pairs, and folds those that are accepted into `state`.
     #[inline(always)]
-    fn evaluate<L: Lobe, A>(
+    fn evaluate<L: ShadedLight, A>(
         &mut self,
         simd: S,
         frame: &Frame,
@@ -87,7 +86,7 @@ impl<S: Simd> Pairs<S> {
         self.len = 0;
         let gathered = Lights::gathered(simd, lights, &self.lights);
         let lobe_of = |lane: usize| lights.lobes.get(self.lights[lane] as usize);
-        let Some(found) = evaluate(frame, &gathered, lobe_of, &self.points) else {
+        let Some(found) = L::evaluate(frame, &gathered, lobe_of, &self.points) else {
             return state;
         };
         let mut estimates = BlockEstimates::NONE;
@@ -97,6 +96,9 @@ impl<S: Simd> Pairs<S> {
         let Vector3 { x, y, z } = found.direction;
         for (lanes, vector) in estimates.direction.iter_mut().zip([x, y, z]) {
             store(lanes, 0, vector);
+        }
+        if let Some(sharpness) = found.sharpness {
+            store(&mut estimates.sharpness, 0, sharpness);
         }
         let mut accepted = found.accepted & filled;
         while accepted != 0 {
@@ -120,7 +122,7 @@ fn mask_from<S: Simd>(simd: S, start: usize) -> S::mask32s {
 /// Folds the estimates of the lights that points accept, each with the turn of its point: point by point, and in
 /// the order of their lists.
 #[inline(always)]
-pub(super) fn fold_pairs<'l, S: Simd, L: Lobe, A>(
+pub(super) fn fold_pairs<'l, S: Simd, L: ShadedLight, A>(
     simd: S,
     frame: &Frame,
     lights: &ShadingBatch<L>,

@@ -1,5 +1,8 @@
 use glam::Vec3;
 
+use crate::base::Direction;
+use crate::lobe::SphericalGaussian;
+
 /// A surface point that lights are evaluated at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadedPoint {
@@ -21,6 +24,9 @@ impl From<Vec3> for ShadedPoint {
 }
 
 /// A light that a point accepts.
+///
+/// Of a [`Vsgl`](crate::Vsgl) the intensity is its [`scalar_irradiance`](crate::Vsgl::scalar_irradiance) E at the
+/// point, in W/m², and the squared distance is 1: E counts as the intensity of a light at unit distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Estimate {
@@ -34,6 +40,30 @@ pub struct Estimate {
     /// The squared distance, or the least one of the estimator.
     pub distance_squared: f32,
     /// The direction from the light to the point, as [`Vpl::direction_to`](crate::Vpl::direction_to) gives
-    /// it.
+    /// it. Of a [`Vsgl`](crate::Vsgl) the direction that its light arrives along, opposite to the axis of
+    /// [`incoming`](crate::Vsgl::incoming).
     pub direction: Vec3,
+    /// The sharpness of the light as it arrives: infinite from a point light, that of
+    /// [`Vsgl::incoming`](crate::Vsgl::incoming) from a [`Vsgl`](crate::Vsgl).
+    pub sharpness: f32,
+}
+
+impl Estimate {
+    /// The light that arrives, as a spherical Gaussian whose integral is the estimate
+    /// [`radiance`](Self::radiance). A sharpness above [`SphericalGaussian::MAX_SHARPNESS`] is that.
+    ///
+    /// Since `product_integral` of a receiver, such as [`LambertLobe`](crate::LambertLobe::product_integral), is
+    /// proportional to this integral, its mean over ξ is that of [`Vsgl::incoming`](crate::Vsgl::incoming).
+    #[must_use]
+    pub fn incoming(&self) -> SphericalGaussian {
+        let from = -self.direction;
+        let axis = if (from.length_squared() - 1.0).abs() < 5e-7 {
+            Direction::from_unit(from)
+        } else {
+            // At a point light the direction is short.
+            Direction::new(from).unwrap_or(Direction::Z)
+        };
+        let sharpness = self.sharpness.min(SphericalGaussian::MAX_SHARPNESS);
+        SphericalGaussian::arriving(axis, sharpness, self.radiance)
+    }
 }

@@ -135,7 +135,11 @@ impl ClusterCell {
         let radius_squared_over_w = across * (one - height.squared());
         let l_squared = z.squared() + w * radius_squared_over_w;
         let u = t + reach_squared * l_squared;
-        let coarse = Self::coarse_gap([w, t, z], radius_squared_over_w, [l_squared, u]);
+        let coarse = Some(Self::coarse_gap(
+            [w, t, z],
+            radius_squared_over_w,
+            [l_squared, u],
+        ));
         if l_squared.value.low <= 0.0 || u.value.low <= 0.0 {
             return [None, None, None, None, coarse];
         }
@@ -184,7 +188,7 @@ impl ClusterCell {
         [w, t, z]: [Function; 3],
         radius_squared_over_w: Function,
         [l_squared, u]: [Function; 2],
-    ) -> Option<Function> {
+    ) -> Function {
         let radius = radius_squared_over_w.value.low.max(0.0);
         let q = if z.value.high <= 0.0 {
             radius + 2.0 * z.value.square().low / w.value.high
@@ -201,9 +205,9 @@ impl ClusterCell {
         };
         let most = (most / (1.0 - t.value.high).max(0.0)).min(1.0 - l_squared.value.low.min(1.0));
         let gap = q * (2.0 - 3.0 * w.value.high) - most;
-        Some(Slopes {
+        Slopes {
             value: Interval::new(gap - 1e-12, f64::INFINITY),
             slopes: [Interval::ALL; 3],
-        })
+        }
     }
 }
