@@ -2,10 +2,10 @@ use alloc::vec::Vec;
 use core::borrow::Borrow;
 use core::marker::PhantomData;
 
-use fearless_simd::{Simd, SimdBase, SimdMask, dispatch};
+use fearless_simd::{Simd, SimdBase, dispatch};
 
 use super::culler::widest;
-use super::lanes::{LANES, Record, compress, load_records, write_chosen};
+use super::lanes::{LANES, Record, compress, load_records, store_records, write_chosen};
 use crate::num::F32Lanes;
 use crate::project::Projected;
 use crate::view::ViewBounds;
@@ -125,7 +125,7 @@ impl<P: Projected> LightBatch<P> {
         self.lights().iter().copied().zip(shapes)
     }
 
-    /// Adds a vector of lights, of which those in `chosen` are kept: their indices, fields and `records`.
+    /// Adds a vector of lights, of which those in `chosen` are kept: their indices and fields.
     #[inline(always)]
     pub(super) fn append<S: Simd>(
         &mut self,
@@ -133,20 +133,14 @@ impl<P: Projected> LightBatch<P> {
         chosen: S::mask32s,
         lights: &[u32],
         fields: &P::Fields<F32Lanes<S>>,
-        records: &[Record],
     ) {
         let (start, lanes) = (self.len, S::f32s::LEN);
         self.make_room(start + lanes);
+        store_records::<S, P>(simd, fields, chosen, &mut self.records[start..]);
         let numbers = S::u32s::from_slice(simd, &lights[..lanes]);
         self.len += write_chosen::<S>(numbers, chosen, &mut self.lights[start..]);
         for (ends, end) in self.bounds.iter_mut().zip(ends(P::bounds_of(fields))) {
             compress::<S>(end, chosen).store_slice(&mut ends[start..start + lanes]);
-        }
-        // Each record is overwritten by the next one unless it is chosen.
-        let (mut end, bits) = (start, chosen.to_bitmask());
-        for (lane, record) in records[..lanes].iter().enumerate() {
-            self.records[end] = *record;
-            end += (bits >> lane & 1) as usize;
         }
     }
 

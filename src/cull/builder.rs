@@ -166,19 +166,19 @@ impl BatchBuilder {
         let mut count = 1;
         for (light, item) in items {
             if count == GROUP {
-                self.flush(&mut group, count, batch);
+                self.flush(&group, count, batch);
                 count = 0;
             }
             group.set(count, light, item);
             count += 1;
         }
-        self.flush(&mut group, count, batch);
+        self.flush(&group, count, batch);
     }
 
     /// Adds the shapes of the first `count` items of a group to the batch.
     fn flush<I: BatchInput>(
         &self,
-        group: &mut Group<I>,
+        group: &Group<I>,
         count: usize,
         batch: &mut LightBatch<<I::Shape as Project>::Projected>,
     ) {

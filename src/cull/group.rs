@@ -9,7 +9,7 @@ use fearless_simd::{Simd, SimdBase};
 use glam::Vec3;
 
 use super::LightBatch;
-use super::lanes::{LANES, Record, mask_of_first, store_records};
+use super::lanes::{LANES, mask_of_first};
 use crate::bound::{
     BoundStrategy, Ellipsoid, Ellipsoids, MAX_QUADS, Quads, Shape, ShapeLanes, around_clusters,
     quads_of_cluster,
@@ -32,7 +32,8 @@ pub(super) trait BatchInput: Copy {
     /// The number of quads in use.
     const QUADS: usize;
 
-    /// Whether the bound of an item may be other than empty. Items for which this is false are skipped early.
+    /// Whether the unit bound of an item may be other than empty. Items for which this is false are skipped
+    /// early. Those with a scale of zero are few, and skipped in lanes.
     fn may_reach(item: Self::Item<'_>) -> bool;
 
     fn placement(item: Self::Item<'_>) -> Placement;
@@ -88,7 +89,7 @@ impl<L: Lobe + 'static, B: BoundStrategy<L, Shape: Project>> BatchInput for Ligh
 
     #[inline(always)]
     fn may_reach((light, _): (&Vpl<L>, Xi)) -> bool {
-        light.flux() > 0.0 && !light.lobe().is_empty()
+        !light.lobe().is_empty()
     }
 
     #[inline(always)]
@@ -174,8 +175,8 @@ impl<B: Project> BatchInput for KeptBounds<B> {
     const QUADS: usize = B::QUADS;
 
     #[inline(always)]
-    fn may_reach((bound, _, scale): (&B, Vec3, f32)) -> bool {
-        !bound.is_empty() && scale > 0.0
+    fn may_reach((bound, ..): (&B, Vec3, f32)) -> bool {
+        !bound.is_empty()
     }
 
     #[inline(always)]
@@ -223,8 +224,6 @@ pub(super) struct Group<I: BatchInput> {
     parameters: [f32; GROUP],
     per_light: [I::PerLight; GROUP],
     lights: [u32; GROUP],
-    /// The projected shapes of a vector.
-    records: [Record; LANES],
 }
 
 impl<I: BatchInput> Group<I> {
@@ -248,7 +247,6 @@ impl<I: BatchInput> Group<I> {
             parameters: [parameter; GROUP],
             per_light: [per_light; GROUP],
             lights: [0; GROUP],
-            records: [Record([0.0; LANES]); LANES],
         }
     }
 
@@ -275,7 +273,7 @@ impl<I: BatchInput> Group<I> {
     /// to `batch`.
     #[inline(always)]
     pub fn append_to<S: Simd>(
-        &mut self,
+        &self,
         simd: S,
         count: usize,
         frame: &Frame,
@@ -285,15 +283,7 @@ impl<I: BatchInput> Group<I> {
         for first in (0..count).step_by(S::f32s::LEN) {
             let wanted = mask_of_first(simd, count - first);
             let (fields, reaches) = self.project(simd, first, frame);
-            let records = &mut self.records[..S::f32s::LEN];
-            store_records::<S, <I::Shape as Project>::Projected>(simd, &fields, records);
-            batch.append(
-                simd,
-                wanted & reaches,
-                &self.lights[first..],
-                &fields,
-                records,
-            );
+            batch.append(simd, wanted & reaches, &self.lights[first..], &fields);
         }
     }
 

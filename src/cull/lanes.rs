@@ -120,11 +120,13 @@ pub(super) fn load_lines<'a, S: Simd>(
     transpose(vectors)
 }
 
-/// Writes a record for each lane of `fields`: the inverse of [`load_records`].
+/// Writes a record for each lane of `fields`, the inverse of [`load_records`]: those of the lanes in `chosen` to
+/// the front of `records`. The rest of as many as there are lanes may change too.
 #[inline(always)]
 pub(super) fn store_records<S: Simd, P: Projected>(
     simd: S,
     fields: &P::Fields<F32Lanes<S>>,
+    chosen: S::mask32s,
     records: &mut [Record],
 ) {
     let mut vectors = [F32Lanes::new(simd, 0.0); LANES];
@@ -132,10 +134,27 @@ pub(super) fn store_records<S: Simd, P: Projected>(
         *vector = *field;
     }
     let vectors = transpose(vectors);
-    for (lane, record) in records[..S::f32s::LEN].iter_mut().enumerate() {
-        for part in 0..parts::<S>() {
-            store(&mut record.0, part, vectors[part * S::f32s::LEN + lane]);
+    let records = &mut records[..S::f32s::LEN];
+    // Most vectors are full.
+    if chosen.all_true() {
+        for (lane, record) in records.iter_mut().enumerate() {
+            store_record(record, &vectors, lane);
         }
+        return;
+    }
+    // Each record is overwritten by the next one unless it is chosen.
+    let (mut end, bits) = (0, chosen.to_bitmask());
+    for lane in 0..S::f32s::LEN {
+        store_record(&mut records[end], &vectors, lane);
+        end += (bits >> lane & 1) as usize;
+    }
+}
+
+/// Stores the record of a lane from `vectors` that are transposed.
+#[inline(always)]
+fn store_record<S: Simd>(record: &mut Record, vectors: &Lanes<F32Lanes<S>>, lane: usize) {
+    for part in 0..parts::<S>() {
+        store(&mut record.0, part, vectors[part * S::f32s::LEN + lane]);
     }
 }
 
