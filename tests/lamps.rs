@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 use approx::assert_relative_eq;
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    Bounded, ConstantLobe, Direction, DistanceWindow, Lobe, Roulette, SpotLobe, Vpl, Xi, glam::Vec3,
+    Bounded, ConstantLobe, Direction, DistanceWindow, Ellipsoid, Lobe, Roulette, SpotLobe, Vpl, Xi,
+    glam::Vec3,
 };
 use support::generators::{self, cases, log_uniform};
 use support::reference::{Brdf, Shape, Smallest, Surface, Vector};
@@ -72,6 +73,8 @@ proptest! {
         prop_assert!(limit <= scale && limit * SpotLobe::PEAK.sqrt() <= 1.000_01 * window.radius());
         let whole = Shape::from(lobe.unit_bound().placed(position, scale));
         let sector = Shape::from(lobe.hard_edged().unit_bound().placed(position, limit));
+        let cut = lobe.unit_bound_cut_at(limit / scale);
+        let cut = Shape::from(cut.placed(position, limit));
         let ball = Shape::from(ConstantLobe.unit_bound().placed(position, limit));
 
         let normal = Vector::from(*axis).unit();
@@ -84,7 +87,7 @@ proptest! {
             let side = normal.orthogonal();
             let side = side.turned(normal.cross(side), azimuth);
             let outgoing = normal.turned(side, share * f64::from(angles[1]));
-            for (brdf, shapes) in [(Brdf::spot(angles), &[&whole, &sector][..]), (Brdf::Constant, &[&ball])] {
+            for (brdf, shapes) in [(Brdf::spot(angles), &[&whole, &sector, &cut][..]), (Brdf::Constant, &[&ball])] {
                 // On the surface for one in ten.
                 let way = outgoing * (reach(brdf, outgoing) * (depth * 1.1).min(1.0));
                 for shape in shapes {
@@ -234,10 +237,13 @@ fn cones_at_the_ends_of_their_range() {
     assert!(SpotLobe::new(0.0, FRAC_PI_2, Direction::X).is_ok());
 }
 
-/// The volume of the smallest ellipsoid around the lobe.
-fn smallest(lobe: &SpotLobe) -> f64 {
+/// The volume of the smallest ellipsoid around the lobe where it is cut off at a share of its range, in units in
+/// which the cut is at the full range.
+fn smallest(lobe: &SpotLobe, share: f64) -> f64 {
     let [inner, outer] = lobe.versines().map(f64::from);
-    let [first, last] = [lobe.inner_angle(), lobe.outer_angle()].map(f64::from);
+    // Up to here the range is cut.
+    let rim = outer - share * (outer - inner);
+    let [first, last] = [(1.0 - rim).acos(), f64::from(lobe.outer_angle())];
     let width = last.min(1.0);
     let mut points = vec![[0.0; 3]];
     for step in 0..=160 {
@@ -251,7 +257,7 @@ fn smallest(lobe: &SpotLobe) -> f64 {
         let length = if share <= 1.0 {
             1.0
         } else {
-            ((outer - versine) / (outer - inner)).clamp(0.0, 1.0)
+            ((outer - versine) / (outer - rim)).clamp(0.0, 1.0)
         };
         for sector in 0..=24 {
             let (sine, cosine) = (TAU / 48.0 * f64::from(sector)).sin_cos();
@@ -271,7 +277,7 @@ fn ellipsoids_of_spot_lights_are_nearly_the_smallest() {
         for share in (0..=8).map(|i| i as f32 / 8.0) {
             let lobe = spot([share * outer, outer]);
             let semi_axes = lobe.unit_bound().semi_axes().to_array().map(f64::from);
-            let ratio = semi_axes.into_iter().product::<f64>() / smallest(&lobe);
+            let ratio = semi_axes.into_iter().product::<f64>() / smallest(&lobe, 1.0);
             // Points are sampled, and the smallest is found to 0.15 %.
             let allowed = if outer <= 90.0 || share == 1.0 {
                 1.005
@@ -288,4 +294,47 @@ fn ellipsoids_of_spot_lights_are_nearly_the_smallest() {
     let mean = sum / f64::from(count);
     println!("volume over the smallest: {mean} in the mean, {worst} at most");
     assert!(mean < 1.012, "{mean}");
+}
+
+/// Lobes that a window cuts at different shares of their range: the volume of the bound over that of the smallest
+/// ellipsoid, and the same of the smaller one of the two bounds that can be kept.
+#[test]
+fn ellipsoids_of_windowed_spot_lights_are_nearly_the_smallest() {
+    let volume = |bound: Ellipsoid| -> f64 {
+        let semi_axes = bound.semi_axes().to_array().map(f64::from);
+        semi_axes.into_iter().product()
+    };
+    let (mut sums, mut count, mut worst) = ([0.0; 2], 0, [1.0_f64; 2]);
+    for outer in (1..=9).map(|i| 20.0 * i as f32) {
+        for inner in (0..4).map(|i| 0.25 * i as f32 * outer) {
+            let lobe = spot([inner, outer]);
+            let whole = volume(lobe.unit_bound());
+            let sector = volume(lobe.hard_edged().unit_bound());
+            for share in [0.9, 0.7, 0.5, 0.2, 0.02] {
+                let least = smallest(&lobe, f64::from(share));
+                let cut = volume(lobe.unit_bound_cut_at(share)) / least;
+                let kept = (whole / f64::from(share).powi(3)).min(sector) / least;
+                let allowed = if outer <= 90.0 { 1.005 } else { 1.085 };
+                assert!(
+                    (0.99..allowed).contains(&cut),
+                    "{inner}° of {outer}° at {share}: {cut} of the smallest"
+                );
+                count += 1;
+                for (i, ratio) in [cut, kept].into_iter().enumerate() {
+                    sums[i] += ratio;
+                    worst[i] = worst[i].max(ratio);
+                }
+            }
+        }
+    }
+    let means = sums.map(|sum| sum / f64::from(count));
+    println!("volume over the smallest, cut and kept: {means:?} in the mean, {worst:?} at most");
+    assert!(
+        means[0] < 1.005 && means[1] < 1.25 && worst[1] < 2.3,
+        "{means:?} {worst:?}"
+    );
+    // At a share of 1 and of 0 they are the lobe's own bound and that of its hard edge.
+    let lobe = spot([20.0, 50.0]);
+    assert_eq!(lobe.unit_bound_cut_at(1.0), lobe.unit_bound());
+    assert_eq!(lobe.unit_bound_cut_at(0.0), lobe.hard_edged().unit_bound());
 }

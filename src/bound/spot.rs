@@ -61,16 +61,20 @@
 
 use super::ellipsoid::Ellipsoids;
 use super::revolved::Revolved;
-use super::shape::{Quads, padded};
+use super::shape::{Quads, Shape, padded};
 use super::{BoundStrategy, Bounded, Ellipsoid, Tight};
-use crate::lobe::SpotLobe;
-use crate::num::{Single, Vector3};
+use crate::lobe::{Lobe, SpotLobe};
+use crate::num::{Single, Vector3, round_down, round_up};
 
 /// √(1/4π), rounded up.
 const REACH: f32 = 0.282_094_8;
 /// The least 1 − cosγ_o, 2⁻²¹. The bound of a narrower lobe is that of a cone of 0.056°, since the rounding of
 /// the axis would count more than what is saved.
 const LEAST_OUTER: f32 = 4.768_371_6e-7;
+/// Pays for the width of the transition that is left of a cut lobe.
+const CUT_WIDTH_ROUNDINGS: u16 = 3;
+/// Pays for 1 − cosγ at the inner cone of a cut lobe.
+const CUT_ROUNDINGS: u16 = 1;
 /// Where the tangent touches that bounds l/(1 + l).
 const TOUCHED: f32 = 0.3;
 
@@ -97,9 +101,40 @@ impl BoundStrategy<SpotLobe> for Tight {
     #[inline(always)]
     fn unit_bounds<N: Single>(&self, quads: &Quads<N>, _: &[()]) -> Ellipsoids<N> {
         let [[x, y, z, inner], [outer, ..], ..] = *quads;
-        let outer = outer.max(outer.splat(LEAST_OUTER));
-        Revolved::around_spot(inner, outer).along(Vector3::new(x, y, z), outer.splat(REACH))
+        ellipsoids(Vector3::new(x, y, z), [inner, outer])
     }
+}
+
+impl SpotLobe {
+    /// Bounds the unit isosurface where it is cut off at the share `share` of its range on the axis, in units in
+    /// which it is cut at the full range: the unit bound of a light that ends at a
+    /// [`DistanceWindow`](crate::DistanceWindow), which is placed with the scale of its
+    /// [`limit`](crate::DistanceWindow::limit).
+    ///
+    /// The range is linear in the cosine between the cones. So what is left is the surface of a lobe whose inner
+    /// cone is wider, with 1 − cosγ = 1 − cosγ_o − `share` · (cosγ_i − cosγ_o), and the bound is as tight as that
+    /// of a whole lobe. With a share of 1 or more it is the [unit bound](Bounded::unit_bound), with 0 or NaN that
+    /// of the [hard edge](Self::hard_edged).
+    #[must_use]
+    pub fn unit_bound_cut_at(&self, share: f32) -> Ellipsoid {
+        if self.is_empty() {
+            return Ellipsoid::EMPTY;
+        }
+        if share >= 1.0 {
+            return self.unit_bound();
+        }
+        let [inner, outer] = self.versines();
+        let width = round_down((outer - inner) * share.max(0.0), CUT_WIDTH_ROUNDINGS);
+        let cut = round_up(outer - width, CUT_ROUNDINGS).min(outer);
+        Ellipsoid::from_lanes(ellipsoids(self.axis().into(), [cut, outer]))
+    }
+}
+
+/// The ellipsoids for 1 − cosγ_i and 1 − cosγ_o.
+#[inline(always)]
+fn ellipsoids<N: Single>(axis: Vector3<N>, [inner, outer]: [N; 2]) -> Ellipsoids<N> {
+    let outer = outer.max(outer.splat(LEAST_OUTER));
+    Revolved::around_spot(inner, outer).along(axis, outer.splat(REACH))
 }
 
 impl Bounded for SpotLobe {

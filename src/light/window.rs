@@ -46,9 +46,27 @@ const LIMIT_ROUNDINGS: u16 = 2;
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 ///
-/// A spot light's bound follows the falloff within its cones, so it cannot be scaled down to end at r. That of
-/// [`SpotLobe::hard_edged`](crate::SpotLobe::hard_edged) can. Where the limit is less than the scale, place the
-/// smaller of the two.
+/// A spot light's bound follows the falloff within its cones, so it cannot be scaled down to end at r.
+/// [`SpotLobe::unit_bound_cut_at`](crate::SpotLobe::unit_bound_cut_at) makes one that does, as tight as that of the
+/// whole lobe:
+///
+/// ```
+/// # use stochastic_light_culling::{Bounded, Direction, DistanceWindow, Roulette, Shape, SpotLobe, Vpl, Xi, glam::Vec3};
+/// # let (roulette, xi, window) = (Roulette::new(0.1)?, Xi::new(0.25)?, DistanceWindow::new(20.0)?);
+/// let lamp = Vpl::spot(Vec3::ZERO, 500.0, SpotLobe::new(0.2, 0.6, Direction::Z)?)?;
+/// let scale = roulette.scale(lamp.flux(), xi);
+/// let limit = window.limit(SpotLobe::PEAK, scale);
+/// let bound = lamp.lobe().unit_bound_cut_at(limit / scale).placed(lamp.position(), limit);
+///
+/// let sector = lamp.lobe().hard_edged().unit_bound().placed(lamp.position(), limit);
+/// assert!(bound.semi_axes().element_product() < 0.99 * sector.semi_axes().element_product());
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+///
+/// Unit bounds that are kept instead are the lobe's own, and that of
+/// [`SpotLobe::hard_edged`](crate::SpotLobe::hard_edged), which holds the lobe up to any distance. Where the limit
+/// is less than the scale, place the smaller of the two. Its volume is 1.2 times the smallest on average, and 2.2
+/// times at worst; that of the cut bound is at most 1.08 times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DistanceWindow {
     radius: f32,

@@ -82,7 +82,7 @@ impl SpotLobe {
     /// Returns the lobe with the inner cone as wide as the outer one, which is nowhere less than this lobe.
     ///
     /// Its range is a sector of a ball. So its bound, scaled to a distance, holds all of the outer cone up to
-    /// that distance: the range of a spot light with a [`DistanceWindow`](crate::DistanceWindow).
+    /// that distance: a bound of a spot light with a [`DistanceWindow`](crate::DistanceWindow) that can be kept.
     #[must_use]
     pub fn hard_edged(self) -> Self {
         Self {

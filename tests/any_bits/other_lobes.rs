@@ -37,6 +37,8 @@ pub fn others(bits: &mut Bits, cameras: &[Camera]) {
     if let Some([axis, _]) = directions(bits) {
         if let Ok(lobe) = SpotLobe::new(bits.number(), bits.number(), axis) {
             probe::saved(&lobe);
+            let cut = lobe.unit_bound_cut_at(bits.number());
+            assert!(cut.is_empty() == lobe.is_empty() && !cut.semi_axes().is_nan());
             for lobe in [lobe, lobe.hard_edged(), lobe.with_axis(-axis)] {
                 assert!((0.0..=1.0).contains(&lobe.emitted_share()));
                 probe::light(lobe, cameras);
