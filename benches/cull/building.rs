@@ -144,6 +144,19 @@ pub fn building(criterion: &mut Criterion) {
         |light, xi| light.bound(&roulette, xi).project(&camera),
         |lights, batch| builder.add(indexed(lights), batch),
     );
+    // As most scenes have them: of one kind.
+    let narrow = lights(|i, incidence| {
+        let outer = [20.0_f32, 30.0, 35.0, 40.0, 45.0][i as usize % 5].to_radians();
+        let inner = [0.0, 0.3, 0.6, 0.8][i as usize % 4] * outer;
+        SpotLobe::new(inner, outer, incidence.normal).expect("in order")
+    });
+    build(
+        &mut group,
+        "spot up to 45°",
+        &narrow,
+        |light, xi| light.bound(&roulette, xi).project(&camera),
+        |lights, batch| builder.add(indexed(lights), batch),
+    );
     let kept: Vec<_> = spots
         .iter()
         .map(|(light, _)| light.lobe().unit_bound())

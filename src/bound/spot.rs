@@ -151,25 +151,22 @@ impl<N: Single> Revolved<N> {
     /// The ellipsoid around a spot light's lobe for `inner` = 1 − c₁ and `outer` = 1 − c₂.
     #[inline(always)]
     fn around_spot(inner: N, outer: N) -> Self {
-        let one = outer.splat(1.0);
-        let is_wide = outer.gt(one);
+        let is_wide = outer.gt(outer.splat(1.0));
+        let is_from_tip = is_wide | inner.gt(inner.splat(1.0 / 3.0));
+        // What no lane needs is skipped: most scenes have one kind of spot light.
+        if !N::any(is_from_tip) {
+            return Self::from_light(inner, outer);
+        }
         let from_tip = Self::from_tip(inner, outer);
-        let is_blunt = inner.gt(inner.splat(1.0 / 3.0));
-        if N::is_known_false(is_wide) {
-            if N::is_known_false(is_blunt) {
-                return Self::from_light(inner, outer);
-            }
-            if N::is_known_false(!is_blunt) {
-                return from_tip;
-            }
+        let mut bound = from_tip;
+        if N::any(!is_from_tip) {
+            bound = Self::select(is_from_tip, from_tip, Self::from_light(inner, outer));
         }
-        let ball = Self::ball(inner, outer);
-        if N::is_known_false(!is_wide) {
-            return Self::select(from_tip.is_smaller(ball), from_tip, ball);
+        if N::any(is_wide) {
+            let ball = Self::ball(inner, outer);
+            bound = Self::select(is_wide & !from_tip.is_smaller(ball), ball, bound);
         }
-        let other = Self::select(is_wide, ball, Self::from_light(inner, outer));
-        let is_from_tip = is_wide & from_tip.is_smaller(ball) | !is_wide & is_blunt;
-        Self::select(is_from_tip, from_tip, other)
+        bound
     }
 
     #[inline(always)]
