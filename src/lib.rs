@@ -229,7 +229,8 @@ pub use bound::{
 #[cfg(feature = "cull")]
 pub use cull::{
     BatchBuilder, BlockEstimates, CullCounters, Culler, Estimate, LightBatch, LightLists,
-    PointBlock, RadianceEstimator, ShadedLight, ShadedPoint, ShadingBatch, TileDepths,
+    PointBlock, RadianceEstimator, Receiver, ReceiverBlock, ShadedLight, ShadedPoint, ShadingBatch,
+    TileDepths,
 };
 #[cfg(feature = "bytemuck")]
 pub use interop::{GpuEllipsoid, GpuSphere};

@@ -9,6 +9,8 @@ use stochastic_light_culling::{
     NoFresnel, Schlick, glam::DVec3,
 };
 use support::generators::{self, cases};
+use support::ggx_nodes::albedos;
+use support::ltc_errors::LtcErrors;
 use support::reference::{Shape, Smallest, Vector, ltc_rows, ltc_value};
 
 #[allow(dead_code, reason = "the tests take parts of it")]
@@ -58,20 +60,6 @@ fn knots_are_reproduced() {
     }
 }
 
-/// The relative L2 error over the hemisphere.
-fn relative_l2(alpha: f64, degrees: f64, f0: f32) -> f64 {
-    let (lobe, mu) = (lobe(alpha, degrees, f0), degrees.to_radians().cos());
-    let (mut of_errors, mut squares) = (0.0, 0.0);
-    let f0 = f64::from(f0);
-    for node in fit::nodes(alpha, mu, 96) {
-        let exact = node.value * (f0 + (1.0 - f0) * node.grazing);
-        let found = f64::from(lobe.value(Vector(node.outgoing).to_f32()));
-        of_errors += node.weight * (found - exact).powi(2);
-        squares += node.weight * exact * exact;
-    }
-    (of_errors / squares).sqrt()
-}
-
 #[test]
 fn errors_are_as_documented() {
     const ROUGHNESSES: [f64; 6] = [1.0, 0.7, 0.4, 0.2, 0.1, 0.05];
@@ -85,7 +73,9 @@ fn errors_are_as_documented() {
     ];
     for (degrees, f0, row) in most {
         for (alpha, most) in ROUGHNESSES.into_iter().zip(row) {
-            let error = relative_l2(alpha, degrees, f0);
+            let LtcErrors {
+                relative_l2: error, ..
+            } = LtcErrors::of(alpha, degrees, f0, 96).unwrap();
             assert!(error <= most, "α = {alpha}, {degrees}°, F0 = {f0}: {error}");
         }
     }
@@ -104,7 +94,7 @@ proptest! {
         let incoming = DVec3::new(-(1.0 - mu * mu).sqrt(), 0.0, mu).as_vec3();
         let incidence = Incidence { normal: Direction::Z, incoming: Direction::new(incoming).unwrap() };
         let lobe = LtcLobe::new(Ggx::new(alpha).unwrap(), NoFresnel, incidence);
-        let [exact, _] = fit::albedos(f64::from(alpha), mu);
+        let [exact, _] = albedos(f64::from(alpha), mu);
         let ratio = f64::from(lobe.reflected()) / exact;
         prop_assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
     }

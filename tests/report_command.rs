@@ -126,6 +126,10 @@ fn check_every_study(scene: &str) {
             "equal_time",
             "functions",
             "interleaving",
+            "ltsd_fit",
+            "ltsd_plane",
+            "ltsd_ring",
+            "ltsd_scenes",
             "receivers",
             "spread",
             "tests",
@@ -177,6 +181,24 @@ fn check_every_study(scene: &str) {
             .zip(&knowing)
             .all(|(blind, knowing)| blind > knowing)
     );
+    let fit = &studies["ltsd_fit"];
+    let [f0, error, energy] = ["f0", "relative_l2", "energy"].map(|name| of(fit, name));
+    for ((f0, error), energy) in f0.iter().zip(error).zip(energy) {
+        assert!(
+            error < 1.0 && (energy - 1.0).abs() < 0.01,
+            "{error} {energy}"
+        );
+        assert!([1.0, 0.04].contains(f0));
+    }
+    for name in ["ltsd_scenes", "ltsd_ring"] {
+        let study = &studies[name];
+        let rmse = of(study, "rmse");
+        for (i, model) in study["model"].iter().enumerate() {
+            assert_eq!(model, ["ggx", "ltc"][i % 2]);
+            assert_eq!(rmse[i] > 0.0, model == "ltc");
+            assert!(rmse[i] < 0.05, "{name}: {}", rmse[i]);
+        }
+    }
     let functions = &studies["functions"];
     for (name, error) in functions["function"]
         .iter()

@@ -50,6 +50,8 @@ pub enum StudyKind {
     Receivers,
     /// Error of the mean of 1 to 64 frames, by how the ξ of lights and frames go together
     Spread,
+    /// Transformed cosines in the place of GGX: error of the lobes and of pictures, and milliseconds
+    Ltsd,
 }
 
 impl Arguments {

@@ -20,6 +20,7 @@ mod statistics;
 mod study;
 mod subject;
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use common::command;
@@ -30,6 +31,7 @@ use common::scene::{Scene, Wanted};
 
 use arguments::Arguments;
 use page::Page;
+use study::Study;
 use subject::{Effort, Subject};
 
 fn main() -> ExitCode {
@@ -57,18 +59,23 @@ fn report(arguments: &Arguments) -> Result<(), String> {
     page.print_head();
     for kind in arguments.studies() {
         let bar = progress("measuring", study::parts(kind, subjects.len()));
-        let study = study::make(kind, &subjects, &|| bar.inc(1));
+        let studies = study::make(kind, &subjects, &|| bar.inc(1));
         bar.finish_and_clear();
-        study
-            .sheet
-            .write(&arguments.out.join(format!("{}.csv", study.name)))?;
-        study
-            .figure
-            .write(&arguments.out.join(format!("{}.svg", study.name)))?;
-        if let Some(picture) = &study.picture {
-            write_png(&arguments.out, &format!("{}.png", study.name), picture)?;
+        for study in &studies {
+            write(study, &arguments.out)?;
+            page.add(study);
         }
-        page.add(&study);
     }
     page.write(&arguments.out)
+}
+
+/// Writes the files of a study.
+fn write(study: &Study, out: &Path) -> Result<(), String> {
+    let name = study.name;
+    study.sheet.write(&out.join(format!("{name}.csv")))?;
+    study.figure.write(&out.join(format!("{name}.svg")))?;
+    match &study.picture {
+        Some(picture) => write_png(out, &format!("{name}.png"), picture),
+        None => Ok(()),
+    }
 }

@@ -1,18 +1,16 @@
 //! Makes the table of the tight bound, and proves that its ellipsoids enclose. Makes the tables of clusters and of
-//! linearly transformed cosines too, and prints the errors of the latter.
+//! linearly transformed cosines too.
 //!
 //! ```text
 //! cargo run --release --example tabulate                 # writes src/bound/table.bin
 //! cargo run --release --example tabulate -- --prove      # proves those of the tight bound and of clusters, in minutes
 //! cargo run --release --example tabulate -- --cluster    # writes src/bound/cluster.bin
 //! cargo run --release --example tabulate -- --ltc        # writes src/lobe/ltc.bin
-//! cargo run --release --example tabulate -- --ltc-errors # prints the errors of the one that is there, as CSV
 //! ```
 
 mod cluster;
 mod fit;
 mod ltc;
-mod ltc_errors;
 mod make;
 
 use std::process::ExitCode;
@@ -37,9 +35,6 @@ struct Arguments {
     /// Make the table of linearly transformed cosines.
     #[arg(long, conflicts_with_all = ["prove", "cluster"])]
     ltc: bool,
-    /// Print how far the linearly transformed cosines are from GGX.
-    #[arg(long, conflicts_with_all = ["prove", "cluster", "ltc"])]
-    ltc_errors: bool,
     /// Boxes after which a cell is given up.
     #[arg(long, default_value_t = 10_000_000)]
     boxes: usize,
@@ -49,9 +44,6 @@ fn main() -> ExitCode {
     command::run(|arguments: Arguments| {
         if arguments.prove {
             prove(&arguments)
-        } else if arguments.ltc_errors {
-            ltc_errors::print();
-            Ok(())
         } else if arguments.cluster {
             write("src/bound/cluster.bin", &cluster::table())
         } else if arguments.ltc {

@@ -65,7 +65,9 @@ impl Blocks {
                 let mut hull = NONE;
                 for row in rows {
                     let first = row * self.columns.len;
-                    for depths in &self.depths[first + columns.start..first + columns.end] {
+                    // A window without columns begins anywhere.
+                    let columns = first + columns.start..first + columns.end;
+                    for depths in self.depths.get(columns).unwrap_or_default() {
                         hull = hull_of(hull, *depths);
                     }
                 }

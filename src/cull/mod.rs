@@ -59,6 +59,7 @@ pub use builder::BatchBuilder;
 pub use culler::{CullCounters, Culler};
 pub use lists::LightLists;
 pub use shading::{
-    BlockEstimates, Estimate, PointBlock, RadianceEstimator, ShadedLight, ShadedPoint, ShadingBatch,
+    BlockEstimates, Estimate, PointBlock, RadianceEstimator, Receiver, ReceiverBlock, ShadedLight,
+    ShadedPoint, ShadingBatch,
 };
 pub use tile_depths::TileDepths;

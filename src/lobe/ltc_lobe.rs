@@ -31,14 +31,15 @@ use crate::num::{Single, Vector3, exact_dot, sqrt_f64};
 ///
 /// One matrix and one factor ρ cannot follow a Fresnel factor over the lobe. The relative L2 error for F = 1
 /// is below 6 % up to 45° and 10 % at 60°, and grows to a half at grazing incidence. For F0 = 0.04 it is up to
-/// 18 % at 45° and 43 % at 60°. `cargo run --release --example tabulate -- --ltc-errors` prints the map.
+/// 18 % at 45° and 43 % at 60°. `cargo run --release --example report -- --study ltsd` makes the map, and
+/// compares pictures.
 ///
 /// # Which direction is fixed
 ///
 /// The table is looked up by the direction ω_i of the light. [Xia et al. 2023, Eq. 13] states that looking it
 /// up by ω_o gives the same value, as a reciprocal BRDF would. But the fit is not reciprocal. Exchanging the
 /// directions changes the BRDF by as much as the fit errs: at α = 0.2 by 1 % between 20° and 40°, and by 26 %
-/// between 30° and 80°.
+/// between 30° and 80°. At a receiver the fixed direction is that to the eye.
 ///
 /// # Edges
 ///

@@ -6,8 +6,8 @@ use std::fmt::Debug;
 use stochastic_light_culling::{
     BatchBuilder, Bounded, BoxTest, Camera, Culler, DepthInterval, Direction, Ellipsoid, Ggx,
     GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, Lobe, NoFresnel, Project,
-    RadianceEstimator, Roulette, Seed, ShadedPoint, ShadingBatch, Sphere, TileDepths, TileGrid,
-    TileRectangle, Vpl, Xi, glam::Mat3,
+    RadianceEstimator, Receiver, ReceiverBlock, Roulette, Seed, ShadedPoint, ShadingBatch, Sphere,
+    TileDepths, TileGrid, TileRectangle, Vpl, Xi, glam::Mat3,
 };
 
 use crate::bits::Bits;
@@ -208,6 +208,27 @@ fn estimates<L: Lobe + Copy>(bits: &mut Bits, roulette: &Roulette, xi: Xi, light
         .iter()
         .flat_map(|point| list.iter().filter_map(|light| scalar(point, *light)));
     assert_eq!(found, expected.collect::<Vec<_>>());
+
+    // As receivers of each other's light they reflect what is no NaN, for none is infinite.
+    let lobes = lights.iter().map(Vpl::lobe).cycle();
+    let receivers = points.iter().zip(lobes).map(|(point, lobe)| Receiver {
+        position: point.position,
+        lobe: *lobe,
+    });
+    if let Some(block) = ReceiverBlock::take(&mut receivers.clone()) {
+        estimator.reflected_at_block(&batch, &list, &block, |estimates, reflected| {
+            for (radiance, reflected) in estimates.radiance.iter().zip(reflected) {
+                assert!(radiance.is_infinite() || *reflected >= 0.0, "{reflected}");
+            }
+        });
+    }
+    let lists = receivers.map(|receiver| (receiver, &list[..]));
+    estimator.fold_reflected_at_points(&batch, lists, (), |(), _, estimate, reflected| {
+        assert!(
+            estimate.radiance.is_infinite() || reflected >= 0.0,
+            "{reflected}"
+        );
+    });
 }
 
 fn roulette(bits: &mut Bits) -> Roulette {

@@ -186,3 +186,24 @@ fn smallest_ellipsoid_touches_a_tile_far_off_the_axis() {
     let stretch = stretch.expect("not empty");
     assert!(stretch.touches(&tile, &depths) && stretch.touches_exactly(&tile, &depths));
 }
+
+#[test]
+fn blocks_of_tiles_without_width_are_culled() {
+    let line = |_| TileRectangle::new(Vec2::ZERO, Vec2::new(0.0, 1.0)).expect("in order");
+    let mut tiles = TileDepths::from_rectangles([60, 1], 1, line).expect("few");
+    for x in 0..60 {
+        tiles.set([x, 0], [DepthInterval::new(1.0, 9.0).ok()]);
+    }
+    let sphere = Sphere::new(Vec3::new(0.0, 2.0, -4.0), 1.0).expect("positive");
+    let mut batch = LightBatch::new();
+    batch.extend(
+        sphere
+            .project(&camera_from(Vec3::ZERO))
+            .map(|sphere| (3, sphere)),
+    );
+    let mut lists = LightLists::new();
+    Culler::new()
+        .cull(&batch, &tiles, &mut lists)
+        .expect("few enough");
+    assert_eq!(lists.lights(), [3; 60]);
+}

@@ -14,6 +14,7 @@ use support::{
 };
 
 mod frame;
+mod receivers;
 
 use frame::{Frame, bits, frame};
 

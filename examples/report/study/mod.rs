@@ -4,6 +4,7 @@ mod delta_sweep;
 mod equal_time;
 mod functions;
 mod interleaving;
+mod ltsd;
 mod receivers;
 mod spread;
 mod tests;
@@ -31,9 +32,9 @@ pub struct Study {
     pub figure: Figure,
 }
 
-/// Makes a study of `subjects`; calls `done` after each of its [`parts`].
-pub fn make(kind: StudyKind, subjects: &[Subject], done: &dyn Fn()) -> Study {
-    match kind {
+/// Makes a study of `subjects`, or several that belong together; calls `done` after each of their [`parts`].
+pub fn make(kind: StudyKind, subjects: &[Subject], done: &dyn Fn()) -> Vec<Study> {
+    let study = match kind {
         StudyKind::DeltaSweep => delta_sweep::make(subjects, done),
         StudyKind::EqualTime => equal_time::make(subjects, done),
         StudyKind::Functions => functions::make(&subjects[0].effort, done),
@@ -43,13 +44,16 @@ pub fn make(kind: StudyKind, subjects: &[Subject], done: &dyn Fn()) -> Study {
         StudyKind::Interleaving => interleaving::make(subjects, done),
         StudyKind::Receivers => receivers::make(subjects, done),
         StudyKind::Spread => spread::make(subjects, done),
-    }
+        StudyKind::Ltsd => return ltsd::make(subjects, done),
+    };
+    vec![study]
 }
 
 /// How many steps a study of so many subjects has.
 pub fn parts(kind: StudyKind, subjects: usize) -> usize {
     match kind {
         StudyKind::Functions | StudyKind::Tightness => 1,
+        StudyKind::Ltsd => ltsd::PARTS,
         StudyKind::EqualTime => subjects * equal_time::ROUGHNESSES.len(),
         StudyKind::Spread => subjects * spread::ROUGHNESSES.len(),
         _ => subjects,

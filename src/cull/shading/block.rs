@@ -4,7 +4,7 @@ use fearless_simd::{Simd, SimdBase};
 use glam::Vec3;
 
 use super::batch::ShadingBatch;
-use super::kernel::{Frame, Lights, Points, ShadedLight};
+use super::kernel::{Evaluated, Frame, Lights, Points, ShadedLight};
 use super::point::{Estimate, ShadedPoint};
 use crate::cull::lanes::{LANES, Lanes, load, parts, store};
 use crate::num::{F32Lanes, Vector3};
@@ -141,7 +141,8 @@ impl BlockEstimates {
     }
 }
 
-/// Calls `each` with the lights of `list` that a point of `block` accepts, in the order of the list.
+/// Calls `each` with the lights of `list` that a point of `block` accepts, in the order of the list, and with
+/// what the points reflect of it: what `reflect` makes of a part.
 #[inline(always)]
 pub(super) fn evaluate_block<S: Simd, L: ShadedLight>(
     simd: S,
@@ -149,9 +150,11 @@ pub(super) fn evaluate_block<S: Simd, L: ShadedLight>(
     lights: &ShadingBatch<L>,
     list: &[u32],
     block: &PointBlock,
-    mut each: impl FnMut(&BlockEstimates),
+    reflect: impl Fn(usize, &Evaluated<S>) -> F32Lanes<S>,
+    mut each: impl FnMut(&BlockEstimates, &Lanes),
 ) {
     let mut estimates = BlockEstimates::NONE;
+    let mut reflected = [0.0; LANES];
     for light in list {
         let splat = Lights::broadcast(simd, lights, *light);
         estimates.light = *light;
@@ -168,11 +171,12 @@ pub(super) fn evaluate_block<S: Simd, L: ShadedLight>(
             );
             let Some(evaluated) = evaluated else {
                 if parts::<S>() > 1 {
-                    clear(&mut estimates, part, S::f32s::LEN);
+                    clear(&mut estimates, &mut reflected, part, S::f32s::LEN);
                 }
                 continue;
             };
             estimates.accepted |= evaluated.accepted << (part * S::f32s::LEN);
+            store(&mut reflected, part, reflect(part, &evaluated));
             store(&mut estimates.radiance, part, evaluated.radiance);
             store(&mut estimates.intensity, part, evaluated.intensity);
             store(
@@ -189,21 +193,21 @@ pub(super) fn evaluate_block<S: Simd, L: ShadedLight>(
             }
         }
         if estimates.accepted != 0 {
-            each(&estimates);
+            each(&estimates, &reflected);
         }
     }
 }
 
 /// Clears what another light has left in a part.
 #[inline(always)]
-fn clear(estimates: &mut BlockEstimates, part: usize, lanes: usize) {
+fn clear(estimates: &mut BlockEstimates, reflected: &mut Lanes, part: usize, lanes: usize) {
     let [x, y, z] = &mut estimates.direction;
     let [radiance, intensity, distance] = [
         &mut estimates.radiance,
         &mut estimates.intensity,
         &mut estimates.distance_squared,
     ];
-    for numbers in [radiance, intensity, distance, x, y, z] {
+    for numbers in [radiance, intensity, distance, x, y, z, reflected] {
         numbers[part * lanes..][..lanes].fill(0.0);
     }
 }

@@ -2,12 +2,15 @@ use fearless_simd::{Level, dispatch};
 
 use super::batch::ShadingBatch;
 use super::block::{BlockEstimates, PointBlock, evaluate_block};
-use super::kernel::{Frame, ShadedLight};
-use super::pairs::fold_pairs;
+use super::kernel::{Evaluated, Frame, ShadedLight};
+use super::pairs::{NoReceivers, Receivers, fold_pairs};
 use super::point::{Estimate, ShadedPoint};
+use super::receiver::{Receiver, ReceiverBlock};
 use crate::base::{Error, number_in};
 use crate::cull::culler::{at_most, widest};
 use crate::light::Roulette;
+use crate::lobe::Lobe;
+use crate::num::Real;
 
 /// Evaluates lists of lights, many at a time: acceptance, and the estimate of the radiance, of each light.
 ///
@@ -138,8 +141,81 @@ impl RadianceEstimator {
         block: &PointBlock,
         mut each: impl FnMut(&BlockEstimates),
     ) {
-        let (frame, each) = (&self.frame, &mut each);
-        dispatch!(self.level, simd => evaluate_block(simd, frame, lights, list, block, each));
+        let frame = &self.frame;
+        let each = &mut |estimates: &BlockEstimates, _: &[f32; PointBlock::LEN]| each(estimates);
+        dispatch!(self.level, simd => evaluate_block(
+            simd,
+            frame,
+            lights,
+            list,
+            block,
+            #[inline(always)]
+            |_, arriving: &Evaluated<_>| arriving.radiance.zero(),
+            each,
+        ));
+    }
+
+    /// Evaluates the lights of `list` at the receivers of `block`. Calls `each` with every light that one of
+    /// them accepts, in the order of the list, and with the radiance that each receiver reflects of it to the
+    /// eye: the estimate of the radiance times the [`value`](Lobe::value) of the receiver's lobe towards the
+    /// light. It is zero where the light is not accepted, and past the last receiver.
+    ///
+    /// Lights below a receiver's horizon are left out before they are evaluated. If a material reflects
+    /// colours alike but for a factor, multiply the sum by it, not each light.
+    ///
+    /// ```
+    /// use stochastic_light_culling::{
+    ///     Direction, Ggx, GgxLobe, Incidence, Lobe, NoFresnel, RadianceEstimator, Receiver, ReceiverBlock,
+    ///     Roulette, ShadingBatch, Vpl, Xi, glam::Vec3,
+    /// };
+    ///
+    /// // A floor with a lamp above it, seen from elsewhere.
+    /// let (lamp, eye) = (Vec3::new(1.0, 2.0, 0.0), Vec3::new(-3.0, 2.0, 0.0));
+    /// let mut lights = ShadingBatch::new();
+    /// lights.push(&Vpl::point(lamp, 10.0)?, Xi::new(0.5)?);
+    /// let receiver = |x: u32| -> Result<_, stochastic_light_culling::Error> {
+    ///     let position = Vec3::new(x as f32 * 0.2 - 2.0, 0.0, 0.0);
+    ///     let incidence = Incidence { normal: Direction::Y, incoming: Direction::new(eye - position)? };
+    ///     Ok(Receiver { position, lobe: GgxLobe::new(Ggx::new(0.2)?, NoFresnel, incidence) })
+    /// };
+    /// let receivers = (0..16).map(receiver).collect::<Result<Vec<_>, _>>()?;
+    /// let block = ReceiverBlock::take(&mut receivers.iter().copied()).expect("there are sixteen");
+    ///
+    /// let roulette = Roulette::new(0.001)?;
+    /// let mut sums = [0.0; 16];
+    /// RadianceEstimator::new(&roulette).reflected_at_block(&lights, &[0], &block, |_, reflected| {
+    ///     for (sum, reflected) in sums.iter_mut().zip(reflected) {
+    ///         *sum += reflected;
+    ///     }
+    /// });
+    /// // The highlight is half way, where the mirror direction meets the lamp.
+    /// let brightest = (0..16).max_by(|i, j| sums[*i].total_cmp(&sums[*j]));
+    /// assert_eq!(brightest, Some(5));
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
+    ///
+    /// # Panics
+    ///
+    /// If `list` holds an index of no light.
+    #[inline]
+    pub fn reflected_at_block<L: Lobe, R: Lobe>(
+        &self,
+        lights: &ShadingBatch<L>,
+        list: &[u32],
+        block: &ReceiverBlock<R>,
+        mut each: impl FnMut(&BlockEstimates, &[f32; PointBlock::LEN]),
+    ) {
+        let (frame, points, each) = (&self.frame, block.points(), &mut each);
+        dispatch!(self.level, simd => evaluate_block(
+            simd,
+            frame,
+            lights,
+            list,
+            points,
+            #[inline(always)]
+            |part, arriving: &Evaluated<_>| block.reflected(simd, part, arriving),
+            each,
+        ));
     }
 
     /// Evaluates at each of `points` the lights of its list. Calls `each` with the turn of the point, 0 for
@@ -195,7 +271,35 @@ impl RadianceEstimator {
         init: A,
         mut each: impl FnMut(A, usize, &Estimate) -> A,
     ) -> A {
-        let (frame, points, each) = (&self.frame, points.into_iter(), &mut each);
-        dispatch!(self.level, simd => fold_pairs(simd, frame, lights, points, init, each))
+        let frame = &self.frame;
+        let points = points.into_iter().map(|(point, list)| (point, (), list));
+        let each = &mut |state, turn, estimate: &Estimate, _| each(state, turn, estimate);
+        dispatch!(self.level, simd => {
+            fold_pairs::<_, L, NoReceivers, A>(simd, frame, lights, points, init, each)
+        })
+    }
+
+    /// Evaluates at each of `receivers` the lights of its list. Folds the accepted ones as
+    /// [`fold_at_points`](Self::fold_at_points) does, each with the radiance that the receiver reflects of it to
+    /// the eye, as in [`reflected_at_block`](Self::reflected_at_block).
+    ///
+    /// # Panics
+    ///
+    /// If a list holds an index of no light.
+    #[inline]
+    pub fn fold_reflected_at_points<'l, L: Lobe, R: Lobe + Clone, A>(
+        &self,
+        lights: &ShadingBatch<L>,
+        receivers: impl IntoIterator<Item = (Receiver<R>, &'l [u32])>,
+        init: A,
+        mut each: impl FnMut(A, usize, &Estimate, f32) -> A,
+    ) -> A {
+        let (frame, each) = (&self.frame, &mut each);
+        let receivers = receivers
+            .into_iter()
+            .map(|(receiver, list)| (receiver.point(), receiver.lobe, list));
+        dispatch!(self.level, simd => {
+            fold_pairs::<_, L, Receivers<_, R>, A>(simd, frame, lights, receivers, init, each)
+        })
     }
 }

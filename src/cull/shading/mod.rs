@@ -6,6 +6,9 @@
 //! each lane, and as many lines are transposed (`pairs`). Both call one function (`kernel`, and `cluster` for
 //! clusters of lights).
 //!
+//! A receiver (`receiver`) is a point with a lobe of its own, that of light from the eye. Either way evaluates it
+//! for the lights that it accepts.
+//!
 //! Direction, lobe and roulette are the generic functions that scalar code runs, so that estimates have the
 //! same bits.
 
@@ -16,9 +19,11 @@ mod estimator;
 mod kernel;
 mod pairs;
 mod point;
+mod receiver;
 
 pub use batch::ShadingBatch;
 pub use block::{BlockEstimates, PointBlock};
 pub use estimator::RadianceEstimator;
 pub use kernel::ShadedLight;
 pub use point::{Estimate, ShadedPoint};
+pub use receiver::{Receiver, ReceiverBlock};

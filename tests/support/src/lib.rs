@@ -13,6 +13,8 @@ pub mod certificate;
 pub mod command;
 pub mod direct_port;
 pub mod generators;
+pub mod ggx_nodes;
+pub mod ltc_errors;
 pub mod parts;
 pub mod quadrature;
 pub mod reference;

@@ -1,0 +1,237 @@
+//! One frame with a model of what glossy surfaces reflect: lights, lists, and receivers, on one core.
+
+use common::frame::{GlossyLight, Tiles, timed};
+use stochastic_light_culling::{
+    BatchBuilder, Bounded, Culler, Direction, Ellipsoid, GgxLobe, Incidence, Interleave,
+    LightBatch, LightLists, LtcLobe, PointBlock, ProjectedEllipsoid, RadianceEstimator, Receiver,
+    ReceiverBlock, Roulette, Schlick, ShadingBatch, Vpl, Xi, glam::Vec3,
+};
+
+use crate::subject::{Gloss, Subject};
+
+/// What glossy surfaces reflect.
+pub trait Model: Bounded<Shape = Ellipsoid> + Copy + 'static {
+    const NAME: &str;
+
+    fn new(gloss: Gloss, incidence: Incidence) -> Self;
+}
+
+impl Model for GgxLobe<Schlick> {
+    const NAME: &str = "ggx";
+
+    fn new(gloss: Gloss, incidence: Incidence) -> Self {
+        GgxLobe::new(gloss.ggx, gloss.fresnel, incidence)
+    }
+}
+
+impl Model for LtcLobe {
+    const NAME: &str = "ltc";
+
+    fn new(gloss: Gloss, incidence: Incidence) -> Self {
+        LtcLobe::new(gloss.ggx, gloss.fresnel, incidence)
+    }
+}
+
+/// The pixels of a tile that see one depth interval.
+pub struct Group {
+    subregion: usize,
+    tile: [u32; 2],
+    interval: u32,
+    pixels: Vec<usize>,
+}
+
+impl Group {
+    pub fn all(subject: &Subject, interleave: &Interleave, tiles: &Tiles) -> Vec<Self> {
+        let surfaces = &subject.surfaces;
+        let mut groups = Vec::new();
+        for (k, subregion) in (0..).zip(tiles.subregions()) {
+            for tile in subregion.grid.tiles() {
+                for interval in 0..subregion.depths.intervals() {
+                    let pixels = subregion.grid.pixels(tile).pixels();
+                    let pixels = pixels.map(|pixel| interleave.join_pixel(k, pixel));
+                    let is_here = |pixel: &[u32; 2]| {
+                        let depth = surfaces.at(*pixel).depth;
+                        subregion.depths.interval_of(tile, depth) == Some(interval)
+                    };
+                    groups.push(Self {
+                        subregion: k as usize,
+                        tile,
+                        interval,
+                        pixels: pixels.filter(is_here).map(|p| surfaces.index(p)).collect(),
+                    });
+                }
+            }
+        }
+        groups
+    }
+}
+
+/// What is lit and seen, whatever the model.
+pub struct Setting<'a> {
+    pub subject: &'a Subject<'a>,
+    pub tiles: &'a Tiles,
+    pub groups: &'a [Group],
+    pub interleave: Interleave,
+    pub lights: &'a [GlossyLight],
+    /// Of the lights' surfaces, and of all that is seen.
+    pub gloss: [Gloss; 2],
+    pub delta: f32,
+}
+
+/// The radiance of each pixel, for red, green and blue.
+pub type Picture = Vec<[f32; 3]>;
+
+/// A frame, and the milliseconds that each step took.
+pub struct Lit {
+    pub picture: Picture,
+    /// To make the lobes of all lights.
+    pub make_ms: f64,
+    /// To bound, project and cull.
+    pub cull_ms: f64,
+    /// To make receivers, and to sum what they reflect.
+    pub shade_ms: f64,
+    /// Lights in the list of a pixel, and those that it accepts, in the mean over pixels that see a surface.
+    pub lights_per_pixel: [f64; 2],
+}
+
+/// The lights of one subregion.
+struct Part<M> {
+    lights: Vec<(Vpl<M>, Xi)>,
+    tints: Vec<[f32; 3]>,
+}
+
+impl Setting<'_> {
+    /// The frame by lists.
+    pub fn light<M: Model>(&self) -> Lit {
+        let roulette = Roulette::new(self.delta).expect("the studies choose it in range");
+        let (parts, make_ms) = timed(|| self.parts::<M>());
+        let builder = BatchBuilder::new(&roulette, &self.subject.camera);
+        let mut culler = Culler::<ProjectedEllipsoid>::new();
+        let mut lists: Vec<LightLists> = parts.iter().map(|_| LightLists::new()).collect();
+        let mut batch = LightBatch::new();
+        let mut cull = || {
+            for ((part, subregion), lists) in
+                parts.iter().zip(self.tiles.subregions()).zip(&mut lists)
+            {
+                batch.clear();
+                let with_xi = (0..).zip(&part.lights).map(|(i, (vpl, xi))| (i, vpl, *xi));
+                builder.add(with_xi, &mut batch);
+                culler
+                    .cull(&batch, &subregion.depths, lists)
+                    .expect("fewer pairs than a u32 counts");
+            }
+        };
+        // The first time makes room. Like a later frame, the second does not.
+        cull();
+        let ((), cull_ms) = timed(cull);
+        let (shaded, shade_ms) = timed(|| {
+            self.shade(&parts, &roulette, |subregion, tile, interval| {
+                lists[subregion].of(tile, interval).to_vec()
+            })
+        });
+        let (picture, lights_per_pixel) = shaded;
+        Lit {
+            picture,
+            make_ms,
+            cull_ms,
+            shade_ms,
+            lights_per_pixel,
+        }
+    }
+
+    /// The frame by all lights, with none left to chance.
+    pub fn exact<M: Model>(&self) -> Picture {
+        let roulette = Roulette::new(1e-30).expect("in range");
+        let parts = self.parts::<M>();
+        let all = |subregion: usize, _, _| (0..parts[subregion].lights.len() as u32).collect();
+        self.shade(&parts, &roulette, all).0
+    }
+
+    fn parts<M: Model>(&self) -> Vec<Part<M>> {
+        let (interleave, count) = (&self.interleave, self.lights.len() as u32);
+        let part = |subregion| {
+            let mut part = Part {
+                lights: Vec::new(),
+                tints: Vec::new(),
+            };
+            for local in 0..interleave.lights_in(subregion, count) {
+                let light = &self.lights[interleave.join_light(subregion, local) as usize];
+                let (vpl, lobe) = (
+                    &light.vpl,
+                    M::new(self.gloss[0], light.vpl.lobe().incidence()),
+                );
+                let vpl = Vpl::new(vpl.position(), vpl.flux(), lobe).expect("it was one");
+                part.lights.push((vpl, light.xi));
+                part.tints.push(light.tint.into());
+            }
+            part
+        };
+        (0..interleave.subregions()).map(part).collect()
+    }
+
+    /// Sums over the list of each tile and depth interval, sixteen receivers at a time.
+    fn shade<M: Model>(
+        &self,
+        parts: &[Part<M>],
+        roulette: &Roulette,
+        list_of: impl Fn(usize, [u32; 2], u32) -> Vec<u32>,
+    ) -> (Picture, [f64; 2]) {
+        let surfaces = &self.subject.surfaces;
+        let eye = self.subject.camera.to_world_space(Vec3::ZERO);
+        let frame = self.subject.frame(self.interleave, self.delta);
+        let estimator = RadianceEstimator::new(roulette)
+            .with_least_distance_squared(frame.least_distance_squared)
+            .expect("a mean of areas");
+        let mut picture = vec![[0.0; 3]; surfaces.surfaces.len()];
+        let mut counts = [0_u64; 3];
+        let batches: Vec<ShadingBatch<M>> = parts
+            .iter()
+            .map(|part| {
+                let mut batch = ShadingBatch::new();
+                batch.extend(part.lights.iter().map(|(vpl, xi)| (vpl, *xi)));
+                batch
+            })
+            .collect();
+        for group in self.groups {
+            let (batch, tints) = (&batches[group.subregion], &parts[group.subregion].tints);
+            let list = list_of(group.subregion, group.tile, group.interval);
+            counts[0] += group.pixels.len() as u64;
+            counts[1] += (group.pixels.len() * list.len()) as u64;
+            let mut receivers = group.pixels.iter().map(|pixel| {
+                let surface = &surfaces.surfaces[*pixel];
+                let direction = |v| Direction::new(v).unwrap_or(Direction::Y);
+                let incidence = Incidence {
+                    normal: direction(surface.normal),
+                    incoming: direction(eye - surface.position),
+                };
+                Receiver {
+                    position: surface.position,
+                    lobe: M::new(self.gloss[1], incidence),
+                }
+            });
+            for pixels in group.pixels.chunks(PointBlock::LEN) {
+                let Some(block) = ReceiverBlock::take(&mut receivers) else {
+                    continue;
+                };
+                let mut sums = [[0.0; PointBlock::LEN]; 3];
+                estimator.reflected_at_block(batch, &list, &block, |light, reflected| {
+                    counts[2] += u64::from(light.accepted.count_ones());
+                    let tint = tints[light.light as usize];
+                    for (sums, tint) in sums.iter_mut().zip(tint) {
+                        for (sum, reflected) in sums.iter_mut().zip(reflected) {
+                            *sum += reflected * tint;
+                        }
+                    }
+                });
+                for (lane, pixel) in pixels.iter().enumerate() {
+                    picture[*pixel] = sums.map(|sums| sums[lane]);
+                }
+            }
+        }
+        let [pixels, listed, accepted] = counts.map(|count| count as f64);
+        (
+            picture,
+            [listed, accepted].map(|count| count / pixels.max(1.0)),
+        )
+    }
+}
