@@ -37,6 +37,7 @@ pub fn frame(name: &str, loaded: Loaded, wanted: &Wanted) -> Result<Scene, Strin
         tracer: &tracer,
         whole,
         focus,
+        is_coated: shiny.is_some() && mesh.materials.iter().all(|m| m.gloss.is_none()),
     };
     let lit = framing.lit(wanted, &lamps, emitters);
     let outside = framing.outside(shiny.is_some());
@@ -86,30 +87,48 @@ struct Framing<'a> {
     whole: Extent,
     /// What is worth looking at.
     focus: Extent,
+    /// Whether that is what a file calls glossy, without a roughness of its own.
+    is_coated: bool,
 }
 
 impl Framing<'_> {
     /// How the scene may be lit: as asked for, as the file says, or where it shines by itself; else from above, and
     /// last from inside.
     fn lit(&self, wanted: &Wanted, lamps: &[Lamp], emitters: Vec<Lamp>) -> Vec<Lit> {
+        let unscaled = |lamp: Lamp, how| Lit {
+            lamps: vec![lamp],
+            how: Some(how),
+        };
         let (lamps, how) = if !wanted.lights.is_empty() {
             let lights = wanted.lights.iter().map(|light| self.lamp_at(*light));
             (lights.collect(), None)
         } else if !lamps.is_empty() {
             (lamps.to_vec(), None)
         } else if !emitters.is_empty() {
-            (emitters, Some("by what shines by itself"))
+            let how = "by what shines by itself";
+            if let ([emitter], true) = (&emitters[..], self.is_coated) {
+                return vec![unscaled(self.aimed_from(emitter), how)];
+            }
+            (emitters, Some(how))
         } else {
-            let above = (vec![self.lamp_at(self.above())], Some("from above"));
-            let inside = indoors::lamp(self.tracer, &self.whole);
-            let inside = inside.map(|lamp| (self.exposed(&[lamp]), Some("from inside")));
-            let lit = [Some(above), inside].into_iter().flatten();
-            return lit.map(|(lamps, how)| Lit { lamps, how }).collect();
+            let above = unscaled(self.lamp_at(self.above()), "from above");
+            let inside = indoors::lamp(self.tracer, &self.whole).map(|lamp| Lit {
+                lamps: self.exposed(&[lamp]),
+                how: Some("from inside"),
+            });
+            return [Some(above), inside].into_iter().flatten().collect();
         };
         vec![Lit {
             lamps: self.exposed(&lamps),
             how,
         }]
+    }
+
+    /// A light just outside `lamp`, for what is glossy alone.
+    fn aimed_from(&self, lamp: &Lamp) -> Lamp {
+        let center = lamp.position().unwrap_or(self.whole.center());
+        let toward = (self.focus.center() - center).normalize_or(Vec3::NEG_Y);
+        self.aimed(center + 0.02 * self.whole.radius() * toward)
     }
 
     /// A light that shines in all directions of a room, and else on what is worth it.
@@ -121,6 +140,10 @@ impl Framing<'_> {
                 intensity: Vec3::splat(IRRADIANCE * distance * distance),
             };
         }
+        self.aimed(position)
+    }
+
+    fn aimed(&self, position: Vec3) -> Lamp {
         let focus = Focus {
             center: self.focus.center(),
             radius: self.focus.radius(),

@@ -87,6 +87,15 @@ impl Lamp {
         })
     }
 
+    /// Where it is, unless it is infinitely far away.
+    pub fn position(&self) -> Option<Vec3> {
+        match *self {
+            Self::Window(spot) => Some(spot.position),
+            Self::Point { position, .. } | Self::Cone { position, .. } => Some(position),
+            Self::Parallel { .. } => None,
+        }
+    }
+
     /// The share of its intensity that it sends in a unit `direction`.
     pub fn share(&self, direction: Vec3) -> f32 {
         match self {
