@@ -275,4 +275,23 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
             outgoing,
         )
     }
+
+    #[inline(always)]
+    fn mean_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        lobe_of: impl Fn(usize) -> Option<&'a Self>,
+        axis: Vector3<N>,
+        sharpness: N,
+    ) -> N {
+        let (lobes, parameters) = GgxLobes::from_numbers(numbers);
+        lobes.mean_over_gaussians(
+            #[inline(always)]
+            |cosine| {
+                let fresnel_of = |i| lobe_of(i).map(|lobe| lobe.fresnel);
+                reflectance(parameters, fresnel_of, cosine)
+            },
+            axis,
+            sharpness,
+        )
+    }
 }

@@ -157,4 +157,20 @@ pub trait Lobe {
             |i, outgoing| lobe_of(i).map_or(0.0, |lobe| lobe.value(Vec3::from_array(outgoing))),
         )
     }
+
+    /// Computes in each lane what stands for the mean of the lobe over the SG about `axis` with `sharpness`:
+    /// ∫ v g dω for ∫ g dω = 1. By default it is the value towards the axis.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn mean_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        lobe_of: impl Fn(usize) -> Option<&'a Self>,
+        axis: Vector3<N>,
+        _sharpness: N,
+    ) -> N
+    where
+        Self: Sized + 'a,
+    {
+        Self::value_in_lanes(numbers, lobe_of, axis)
+    }
 }

@@ -160,6 +160,11 @@ impl RadianceEstimator {
     /// eye: the estimate of the radiance times the [`value`](Lobe::value) of the receiver's lobe towards the
     /// light. It is zero where the light is not accepted, and past the last receiver.
     ///
+    /// Of a cluster ([`Vsgl`](crate::Vsgl)) it is the receiver's `product_integral` with the light as it arrives, but
+    /// for rounding: by the filtered NDF for a [`GgxLobe`](crate::GgxLobe::product_integral), and the value towards
+    /// the axis, as for a [`LambertLobe`](crate::LambertLobe::product_integral), for every other lobe. A cluster whose
+    /// light arrives along an axis below the horizon is left out, though some of it may arrive from above.
+    ///
     /// Lights below a receiver's horizon are left out before they are evaluated. If a material reflects
     /// colours alike but for a factor, multiply the sum by it, not each light.
     ///
@@ -198,7 +203,7 @@ impl RadianceEstimator {
     ///
     /// If `list` holds an index of no light.
     #[inline]
-    pub fn reflected_at_block<L: Lobe, R: Lobe>(
+    pub fn reflected_at_block<L: ShadedLight, R: Lobe>(
         &self,
         lights: &ShadingBatch<L>,
         list: &[u32],
@@ -287,7 +292,7 @@ impl RadianceEstimator {
     ///
     /// If a list holds an index of no light.
     #[inline]
-    pub fn fold_reflected_at_points<'l, L: Lobe, R: Lobe + Clone, A>(
+    pub fn fold_reflected_at_points<'l, L: ShadedLight, R: Lobe + Clone, A>(
         &self,
         lights: &ShadingBatch<L>,
         receivers: impl IntoIterator<Item = (Receiver<R>, &'l [u32])>,

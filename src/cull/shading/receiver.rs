@@ -121,6 +121,10 @@ pub(super) fn reflected<'a, S: Simd, R: Lobe + 'a>(
     arriving: &Evaluated<S>,
 ) -> F32Lanes<S> {
     let radiance = arriving.radiance;
-    let value = R::value_in_lanes(numbers, lobe_of, -arriving.direction);
+    let from = -arriving.direction;
+    let value = match arriving.sharpness {
+        None => R::value_in_lanes(numbers, lobe_of, from),
+        Some(sharpness) => R::mean_in_lanes(numbers, lobe_of, from, sharpness),
+    };
     F32Lanes::select(radiance.is_positive(), radiance * value, radiance.zero())
 }
