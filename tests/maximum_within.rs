@@ -185,6 +185,7 @@ proptest! {
         random in random(),
     ) {
         let chord = f64::from(case.cap.chord());
+        let surface = case.lit.surface;
         // Towards a thinner medium F is as steep as can be, at the critical angle.
         if let Brdf::Ggx { fresnel, .. } | Brdf::Anisotropic { fresnel, .. } = case.brdf
             && let Fresnel::Dielectric(index) | Fresnel::Conductor(index, _) = fresnel
@@ -198,11 +199,17 @@ proptest! {
             Brdf::Phong { exponent, .. } => ((1.0 + f64::from(exponent)).sqrt().recip(), true),
             Brdf::SphericalGaussian { sharpness, .. } => ((1.0 + f64::from(sharpness)).sqrt().recip(), false),
             Brdf::Spot { angles: [inner, outer], .. } => (f64::from(outer - inner), false),
+            // Narrower than that of GGX, and ever more so towards grazing incidence.
+            Brdf::Ltc {
+                roughness,
+                matrix: None,
+                ..
+            } => (f64::from(roughness) * 0.3 * surface.incident_cosine(), true),
+            // A caller's matrix may be as narrow as it likes.
             Brdf::Ltc { .. } => return Ok(()),
             Brdf::Lambert { .. } | Brdf::Constant => (1.0, true),
         };
         let axis = Vector::from(*case.cap.axis()).unit();
-        let surface = case.lit.surface;
         // Half vectors that vanish have any direction.
         let half = (surface.incoming + axis).length();
         // A power of the cosine below 1 is steep there too.

@@ -136,6 +136,23 @@ pub(crate) struct Caps<N> {
 }
 
 impl<N: Single> Caps<N> {
+    /// The greatest ω·r for a vector `row` = r of any length.
+    #[inline(always)]
+    pub fn greatest_product(&self, row: Vector3<N::Double>) -> N::Double {
+        row.dot(self.axis.widen()) + row.length() * self.chord.widen()
+    }
+
+    /// The least ‖Rω‖ for a matrix R with these `rows`, whose singular values are at most `norm`. May be negative.
+    #[inline(always)]
+    pub fn least_image(&self, rows: [Vector3<N::Double>; 3], norm: N::Double) -> N::Double {
+        let axis = self.axis.widen();
+        let [x, y, z] = rows.map(
+            #[inline(always)]
+            |row| row.dot(axis),
+        );
+        (x * x + y * y + z * z).sqrt() - norm * self.chord.widen()
+    }
+
     /// The greatest ω·n, at most 1. Not positive if all of the cap is below the horizon of `normal` = n.
     #[inline(always)]
     pub fn greatest_cosine(&self, normal: Vector3<N>) -> N {

@@ -2,9 +2,12 @@ use core::f64::consts::FRAC_1_PI;
 
 use glam::{Mat3, Vec3};
 
-use super::{Fresnel, Ggx, Incidence, Lobe, LobeNumbers, ltc_table, padded};
+use super::{Cap, Fresnel, Ggx, Incidence, Lobe, LobeNumbers, ltc_table, padded};
 use crate::base::{Direction, Error, number_in};
-use crate::num::{Single, Vector3, exact_dot, sqrt_f64};
+use crate::num::{Single, Vector3, exact_dot, round_up, sqrt_f64};
+
+/// Budget for the rounding of a maximum within a cap to single precision.
+const MAXIMUM_ROUNDINGS: u16 = 2;
 
 /// A linearly transformed cosine: a cheap lobe that resembles a [`GgxLobe`](crate::GgxLobe)
 /// [Heitz et al. 2016; Xia et al. 2023].
@@ -303,6 +306,33 @@ impl Lobe for LtcLobe {
     #[inline]
     fn value(&self, outgoing: Vec3) -> f32 {
         self.lanes().value(outgoing.into())
+    }
+
+    /// z grows by no more than the chord times its row, and ‖M⁻¹ω‖ falls by no more than the chord times the
+    /// greatest singular value, for which the root of the sum of all squared elements is taken.
+    ///
+    /// The least singular value is the determinant over the product of the others, of which half that sum is an
+    /// upper bound. It bounds ‖M⁻¹ω‖ for wide caps.
+    fn maximum_within(&self, cap: &Cap) -> f32 {
+        let (lanes, cap) = (self.lanes(), cap.lanes());
+        let is_above = cap.greatest_cosine(lanes.normal) > 0.0;
+        let [first, third] = [lanes.first, lanes.third].map(Vector3::widen);
+        let second = third.cross(first);
+        let rows = [first, second, third];
+        let height = cap.greatest_product(third);
+        if self.is_empty() || !is_above || height <= 0.0 {
+            return 0.0;
+        }
+        let squares = rows.map(Vector3::length_squared);
+        let [_, determinant, _] = squares;
+        let sum: f64 = squares.iter().sum();
+        let length = cap
+            .least_image(rows, sqrt_f64(sum))
+            .max(2.0 * determinant / sum);
+        // z is no longer than the whole.
+        let most =
+            f64::from(self.amplitude) * (height / length).min(1.0) / (length * length * length);
+        round_up(most.min(f32::MAX.into()) as f32, MAXIMUM_ROUNDINGS).max(f32::MIN_POSITIVE)
     }
 
     fn horizon_normal(&self) -> Option<Direction> {
