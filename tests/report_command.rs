@@ -74,6 +74,10 @@ fn quick_run(test: &str, more: &[&str]) -> HashMap<String, Columns> {
                 svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"),
                 "{name}"
             );
+            // As wide as a page, with ticks such as 10⁻⁵, not 1e-5.
+            assert!(svg.contains(r#"width="800""#), "{name}");
+            let is_power = |line: &&str| line.contains('e') && line.trim().parse::<f64>().is_ok();
+            assert_eq!(svg.lines().find(is_power), None, "{name}");
             assert!(page.contains(&format!("({name}.svg)")), "{name}");
             let mut reader =
                 csv::Reader::from_path(out.join(format!("{name}.csv"))).expect("a file");

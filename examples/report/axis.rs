@@ -66,6 +66,23 @@ impl Scale {
         (at - low) / (high - low)
     }
 
+    /// The number at a tick, in the notation of all ticks of the axis: powers of ten if it has many of them.
+    pub fn tick(&self, x: f64) -> String {
+        let is_plain = 1e-3 <= self.low && self.high < 1e5 && self.high < 1e3 * self.low;
+        if !self.is_log || is_plain {
+            return short(x);
+        }
+        let power = (x.log10() + 1e-9).floor();
+        let digit = short(x / 10_f64.powf(power));
+        let factor = if digit == "1" {
+            String::new()
+        } else {
+            format!("{digit}·")
+        };
+        let power: String = power.to_string().chars().map(superscript).collect();
+        format!("{factor}10{power}")
+    }
+
     /// `x`, or the nearest number that can be shown.
     pub fn nearest(&self, x: f64) -> f64 {
         x.clamp(self.low, self.high)
@@ -128,5 +145,13 @@ pub fn short(x: f64) -> String {
         text.trim_end_matches('0').trim_end_matches('.').into()
     } else {
         text
+    }
+}
+
+fn superscript(digit: char) -> char {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    match digit.to_digit(10) {
+        Some(digit) => DIGITS[digit as usize],
+        None => '⁻',
     }
 }
