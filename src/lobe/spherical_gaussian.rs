@@ -250,15 +250,10 @@ impl SphericalGaussian {
     #[must_use]
     pub fn product(&self, other: &Self) -> Self {
         let [a, b] = [self, other].map(|sg| f64::from(sg.sharpness));
-        let [u, v] = [self, other].map(|sg| unit(Vector3::from(sg.axis)));
-        let sum = u * a + v * b;
+        let axes = [self, other].map(|sg| unit(Vector3::from(sg.axis)));
+        let (sum, power) = product_of(axes, [a, b]);
         let sharpness = sum.length();
-        let apart = (u - v).length_squared();
-        // Positive where λ₁ and λ₂ are zero too.
-        let sum_of_three = (sharpness + a + b).max(f64::MIN_POSITIVE);
-        let amplitude = f64::from(self.amplitude)
-            * f64::from(other.amplitude)
-            * exponential(-(a * b * apart / sum_of_three));
+        let amplitude = f64::from(self.amplitude) * f64::from(other.amplitude) * power;
         let most = f64::from(Self::MAX_SHARPNESS);
         let (clamped, share) = if sharpness > most {
             (most, solid_angle(sharpness) / solid_angle(most))
@@ -360,6 +355,16 @@ pub(crate) fn toksvig(mean: Vector3<f64>, rest: f64) -> (Direction, f32) {
     (axis, sharpness as f32)
 }
 
+/// s = λ₁ξ₁ + λ₂ξ₂ and exp(−λ₁λ₂‖ξ₁ − ξ₂‖²/(‖s‖ + λ₁ + λ₂)), for the product of two SGs of unit amplitude.
+#[inline(always)]
+fn product_of<D: Real<Element = f64>>([u, v]: [Vector3<D>; 2], [a, b]: [D; 2]) -> (Vector3<D>, D) {
+    let sum = u * a + v * b;
+    let apart = (u - v).length_squared();
+    // Positive where λ₁ and λ₂ are zero too.
+    let sum_of_three = (sum.length() + a + b).max(a.splat(f64::MIN_POSITIVE));
+    (sum, exponential(-(a * b * apart / sum_of_three)))
+}
+
 impl Lobe for SphericalGaussian {
     #[inline]
     fn value(&self, outgoing: Vec3) -> f32 {
@@ -407,6 +412,22 @@ impl Lobe for SphericalGaussian {
             amplitude,
         };
         lobes.value(outgoing)
+    }
+
+    /// ∫ v g dω over the integral of g: of the product's integral, that of g is divided out.
+    #[inline(always)]
+    fn mean_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        _: impl Fn(usize) -> Option<&'a Self>,
+        axis: Vector3<N>,
+        sharpness: N,
+    ) -> N {
+        let [x, y, z, own, amplitude, ..] = *numbers;
+        let axes = [Vector3::new(x, y, z), axis].map(unit);
+        let other = sharpness.widen();
+        let (sum, power) = product_of(axes, [own.widen(), other]);
+        let share = solid_angle(sum.length()) / solid_angle(other);
+        N::narrow(amplitude.widen() * power * share)
     }
 }
 

@@ -161,9 +161,10 @@ impl RadianceEstimator {
     /// light. It is zero where the light is not accepted, and past the last receiver.
     ///
     /// Of a cluster ([`Vsgl`](crate::Vsgl)) it is the receiver's `product_integral` with the light as it arrives, but
-    /// for rounding: by the filtered NDF for a [`GgxLobe`](crate::GgxLobe::product_integral), and the value towards
-    /// the axis, as for a [`LambertLobe`](crate::LambertLobe::product_integral), for every other lobe. A cluster whose
-    /// light arrives along an axis below the horizon is left out, though some of it may arrive from above.
+    /// for rounding: by the filtered NDF for a [`GgxLobe`](crate::GgxLobe::product_integral), by the product for
+    /// a [`SphericalGaussian`](crate::SphericalGaussian::product_integral), and by the value towards the axis, as for a
+    /// [`LambertLobe`](crate::LambertLobe::product_integral), for every other lobe. A cluster whose light arrives
+    /// along an axis below the horizon is left out, though some of it may arrive from above.
     ///
     /// Lights below a receiver's horizon are left out before they are evaluated. If a material reflects
     /// colours alike but for a factor, multiply the sum by it, not each light.
