@@ -21,7 +21,7 @@ use support::ggx_nodes::{Node, albedos, nodes};
     reason = "the crate reads the table, the fit only needs its layout"
 )]
 #[path = "../../src/lobe/ltc_table.rs"]
-mod layout;
+pub mod layout;
 
 use layout::{KNOTS, MATRIX_SCALES};
 
@@ -255,7 +255,7 @@ impl CostFunction for Cost<'_> {
 }
 
 /// Where `cost` is least, by the method of [Nelder & Mead 1965].
-fn minimum(cost: &dyn Fn(&[f64]) -> f64, simplex: Vec<Vec<f64>>, iterations: u64) -> Vec<f64> {
+pub fn minimum(cost: &dyn Fn(&[f64]) -> f64, simplex: Vec<Vec<f64>>, iterations: u64) -> Vec<f64> {
     let start = simplex[0].clone();
     let executor = Executor::new(Cost(cost), NelderMead::new(simplex))
         .configure(|state| state.max_iters(iterations))

@@ -1,16 +1,18 @@
 //! Makes the table of the tight bound, and proves that its ellipsoids enclose. Makes the tables of clusters and of
-//! linearly transformed cosines too.
+//! linearly transformed cosines too, and that of the inequalities behind the bound of the latter.
 //!
 //! ```text
 //! cargo run --release --example tabulate                 # writes src/bound/table.bin
 //! cargo run --release --example tabulate -- --prove      # proves those of the tight bound and of clusters, in minutes
 //! cargo run --release --example tabulate -- --cluster    # writes src/bound/cluster.bin
 //! cargo run --release --example tabulate -- --ltc        # writes src/lobe/ltc.bin
+//! cargo run --release --example tabulate -- --ltc-bound  # writes src/bound/ltc_rows.bin, for the table of --ltc
 //! ```
 
 mod cluster;
 mod fit;
 mod ltc;
+mod ltc_rows;
 mod make;
 
 use std::process::ExitCode;
@@ -35,6 +37,9 @@ struct Arguments {
     /// Make the table of linearly transformed cosines.
     #[arg(long, conflicts_with_all = ["prove", "cluster"])]
     ltc: bool,
+    /// Make the table of inequalities behind the bound of linearly transformed cosines.
+    #[arg(long, conflicts_with_all = ["prove", "cluster", "ltc"])]
+    ltc_bound: bool,
     /// Boxes after which a cell is given up.
     #[arg(long, default_value_t = 10_000_000)]
     boxes: usize,
@@ -46,6 +51,8 @@ fn main() -> ExitCode {
             prove(&arguments)
         } else if arguments.cluster {
             write("src/bound/cluster.bin", &cluster::table())
+        } else if arguments.ltc_bound {
+            write("src/bound/ltc_rows.bin", &ltc_rows::table())
         } else if arguments.ltc {
             write("src/lobe/ltc.bin", &ltc::table())
         } else {

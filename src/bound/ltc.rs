@@ -11,59 +11,52 @@
 //!
 //! # The inequality
 //!
-//! For any α₃ > 0, α₁, ν > 0 and q with w²(1 − α₁w)² ≤ q(1 − (1−ν)w⁴) on \[0, 1\],
+//! Let û be a vector of about unit length in the plane of r₃ and e₁ below, û⊥ its perpendicular in this plane,
+//! and g = û·y/m. If α₁, α₂, ν > 0 and q are such that for all directions y/m with w ≥ 0
 //!
-//! **‖X‖² − α₃m² + α₃(1−ν)p² − α₁p ≤ q/(4α₃)**.
+//! (w − α₁w² − α₂g)₊² ≤ q(ω_2² + (û⊥·ω)² + νg²),  ω = y/m, ω_2 = ω·e₂ (A)
 //!
-//! For the left side is bm − am² with b = w(1 − α₁w) and a = α₃(1 − (1−ν)w⁴) > 0, at most b²/(4a) for
-//! every m. It is a quadratic inequality in y, and so an ellipsoid where its
-//! quadratic form is positive definite. As M need not be orthogonal, the form has the term ‖M⁻¹y‖².
+//! then for any α₃ > 0
 //!
-//! # The choice of α₁, ν and q
+//! **‖X‖² − α₃(y_2² + (û⊥·y)² + ν(û·y)²) − α₁p − α₂û·y ≤ q/(4α₃)**.
 //!
-//! With ν = (1 − α₁)²/q both sides of the condition are equal at w = 1. Their difference over 1 − w is then
-//! q(1 + w)(1 + w²) − w² + γw³ with γ = 2α₁ − 1, which is not negative if
+//! For the left side is βm − κm² with β = w − α₁w² − α₂g and κ = α₃(ω_2² + …), at most β₊²/(4κ) for every m. It
+//! is a quadratic inequality in y, and so an ellipsoid where its quadratic form is positive definite. As M need
+//! not be orthogonal, the form has the term ‖M⁻¹y‖². The term of û penalises directions away from the axis of
+//! the lobe, which M tilts away from r₃.
 //!
-//! q ≥ h(w) = w²(1 − γw)/((1 + w)(1 + w²)) for all w in \[0, 1\].
-//!
-//! The sign of h′(w) is that of g(w) − γ, g(w) = (2 + w − w³)/(w(3 + 2w + w²)). g decreases: the numerator of
-//! its derivative is −6 − 8w − 8w² − 8w³ − 2w⁴. So for γ = g(w₁) the largest value is q = h(w₁), and it is
-//! positive, since g(w)w < 1. ν is positive unless γ = 1, which is so for w₁ = 0.5437 alone, the root of
-//! w³ + w² + w = 1. So *each* other w₁ in (0, 1) gives an ellipsoid, and what chooses w₁ and α₃ needs no
-//! proof. Three pairs are tried, and the one with the smallest volume is taken: a polynomial for lobes along
-//! r₃, and two constants for lobes that M tilts far from r₃.
+//! (A) knows nothing of M but the angle between r₃ and û. So a row of numbers (α₁, α₂, û, ν, q) for which it
+//! holds gives an ellipsoid for *every* M, and what chooses the row and α₃ needs no proof. The rows are tabulated
+//! (`ltc_rows`) by m₁₁ and m₁₁b below, for the lobes that resemble GGX, and each is proved: for a fixed angle δ
+//! between û and ω the right side is fixed, and the left side has a single maximum over w, so that (A) is a
+//! matter of one variable and of intervals of it (`tests/ltc_bound.rs`).
 //!
 //! # The ellipsoid
 //!
 //! Let e₃ = r₃, e₂ along r₂ and e₁ = e₂ × e₃. Then r₁ = (e₁ + m₁₁b e₃)/m₁₁ and r₂ = e₂/m₂₂ for positive m₁₁ and
-//! m₂₂. With y = m₁₁Y₁e₁ + m₂₂Y₂e₂ + Y₃e₃ the inequality is YᵀQY − α₁Y₃ ≤ q/(4α₃), where Q has the elements
+//! m₂₂. In terms of X, y = (m₁₁X₁ + kX₃, m₂₂X₂, X₃), k = −m₁₁b. With û = (s, 0, c) the inequality is
+//! XᵀQX − ℓ·X ≤ q/(4α₃), where
 //!
-//! Q₁₁ = 1 − α₃m₁₁², Q₁₃ = b, Q₃₃ = 1 + b² − α₃ν, Q₂₂ = 1 − α₃m₂₂²,
+//! v = (cm₁₁, ck − s), t = (sm₁₁, sk + c), ℓ = (α₂t₁, α₁ + α₂t₃),
 //!
-//! and others zero. Q₁₁Q₃₃ − b² = 1 − α₃T + α₃²m₁₁²ν, T = ν + m₁₁²(1 + b²). α₃ is at most 0.9 of 1/T and of
-//! 1/m₂₂², so Q is positive definite, and no difference below cancels by more than a factor of ten. The centre
-//! is ½α₁Q⁻¹e₃, and the semi-axes are those of √V Q^{−½}, V = q/(4α₃) + ¼α₁²(Q⁻¹)₃₃. The light is inside.
+//! Q is 1 − α₃(v vᵀ + νt tᵀ) in the plane of X₁ and X₃ and Q₂₂ = 1 − α₃m₂₂². Let T = ‖v‖² + ν‖t‖². α₃ is at most
+//! 0.9 of 1/T and of 1/m₂₂², so Q is positive definite with eigenvalues of at least 0.1. The centre is ½Q⁻¹ℓ, and
+//! the semi-axes are those of √V Q^{−½}, V = q/(4α₃) + ¼ℓᵀQ⁻¹ℓ. The light is inside.
 //!
 //! The lobe below the horizon is enclosed too.
 
 use super::ellipsoid::Ellipsoids;
-use super::principal_axes::{ellipsoids_along, principal_axes};
+use super::principal_axes::ellipsoids_along;
 use super::shape::{Quads, padded};
-use super::{BoundStrategy, Bounded, Ellipsoid, Tight};
+use super::{BoundStrategy, Bounded, Ellipsoid, Tight, ltc_rows};
 use crate::lobe::{Lobe, LtcLobe};
 use crate::num::{Double, Single, Vector3};
 
 /// Pays for the rounding of K and of its product with a semi-axis.
 const SEMI_AXIS_ROUNDINGS: u16 = 8;
-/// The largest share of 1/T and 1/m₂₂² that α₃ takes.
-const LARGEST_SHARE: f64 = 0.9;
-/// w₁ and α₃ times the squared spread, for lobes that M tilts.
-const TILTED: [(f64, f64); 2] = [(0.52, 0.44), (0.4, 0.44)];
-/// Pays for the rounding of q in `f64`.
-const Q_GROWTH: f64 = 1.0 + 1e-14;
-
-/// Bounds the lobe by an ellipsoid, with its part below the horizon. The volume is on average 1.05 times that
-/// of the smallest around the isosurface. For smooth surfaces at 80° and more it is up to 1.8 times that.
+/// Bounds the lobe by an ellipsoid, with its part below the horizon. The volume is on average 1.03 times that
+/// of the smallest around the isosurface, at most 1.1 times that up to 85°, and 1.15 times beyond, or 1.35 times
+/// for α < 0.01.
 impl BoundStrategy<LtcLobe> for Tight {
     type Shape = Ellipsoid;
 
@@ -134,177 +127,128 @@ impl<D: Double> Transformed<D> {
     /// The ellipsoid for a lobe with this factor of z/‖M⁻¹ω‖⁴.
     #[inline(always)]
     fn ellipsoids<N: Single<Double = D>>(&self, amplitude: N) -> Ellipsoids<N> {
-        let (b, m_1, m_2) = (self.slant, self.along, self.across);
-        let zero = b.zero();
-        let (first, second) = (m_1 * m_1, m_2 * m_2);
-        let tilted = first * b * b;
-        let oblique = first + tilted;
-        let spread = ((first + second) * 0.5 + tilted * 2.0).sqrt();
-        let skewed = Skewed {
-            first,
-            second,
-            oblique,
-        };
-        let mut best = skewed.quadric(Choice::along_axis(spread));
-        for (w, share) in TILTED {
-            let w = spread.splat(w);
-            let next = skewed.quadric(Choice::of(w, w.splat(share) / (spread * spread)));
-            best = Quadric::smaller(best, next);
-        }
-        let Quadric {
-            alpha_1,
-            determinant,
-            q_11,
-            q_22,
-            level,
-        } = best;
-        let level = level.sqrt();
-        let q_33 = (determinant + b * b) / q_11;
-        let half = alpha_1 * 0.5;
-        let center = Vector3::new(
-            -m_1 * b * half / determinant,
-            zero,
-            q_11 / determinant * half,
+        let (a, m_2) = (self.along, self.across);
+        let k = -(a * self.slant);
+        let row = Row::of::<N>(a, k);
+        // Those of the module documentation.
+        let v = [row.cosine * a, row.cosine * k - row.sine];
+        let t = [row.sine * a, row.sine * k + row.cosine];
+        let along = |i: usize, j: usize| v[i] * v[j] + row.nu * t[i] * t[j];
+        let (p_11, p_13, p_33) = (along(0, 0), along(0, 1), along(1, 1));
+        let second = m_2 * m_2;
+        let alpha_3 = row.share / (p_11 + p_33).max(second);
+        let (q_11, q_33) = (-(alpha_3 * p_11) + 1.0, -(alpha_3 * p_33) + 1.0);
+        let (q_13, q_22) = (-(alpha_3 * p_13), -(alpha_3 * second) + 1.0);
+        let determinant = q_11 * q_33 - q_13 * q_13;
+        let (l_1, l_3) = (row.alpha_2 * t[0], row.alpha_2 * t[1] + row.alpha_1);
+        let half = a.splat(0.5) / determinant;
+        let (x_1, x_3) = (
+            (q_33 * l_1 - q_13 * l_3) * half,
+            (q_11 * l_3 - q_13 * l_1) * half,
         );
-        // The rows of diag(m₁₁, m₂₂, 1) √V A with A Aᵀ = Q⁻¹.
-        let rows = [
-            [m_1 * (q_33 / determinant).sqrt() * level, zero, zero],
-            [zero, m_2 * level / q_22.sqrt(), zero],
-            [
-                -b * level / (q_33 * determinant).sqrt(),
-                zero,
-                level / q_33.sqrt(),
-            ],
-        ];
+        let level = (row.q / (alpha_3 * 4.0) + (l_1 * x_1 + l_3 * x_3) * 0.5).sqrt();
+        // The rows of [[m₁₁, k], [0, 1]]·√V A with a lower triangular A, A Aᵀ = Q⁻¹.
+        let root = q_33.sqrt();
+        let slope = level / (root * determinant.sqrt());
+        let (first, second) = (q_33 * slope, -(q_13 * slope));
+        let third = level / root;
+        let plane = PlaneAxes::of(
+            [[a * first + k * second, k * third], [second, third]],
+            a * first * third,
+        );
+        let zero = a.zero();
+        let center = Vector3::new(a * x_1 + k * x_3, zero, x_3);
         let scale =
             N::narrow((amplitude.widen() / (self.length * self.length * self.length)).sqrt());
+        let [[x, z], [u, v]] = plane.axes;
         ellipsoids_along(
             &self.frame,
             center,
-            principal_axes(rows),
+            (
+                [
+                    Vector3::new(x, zero, z),
+                    Vector3::new(zero, a.splat(1.0), zero),
+                    Vector3::new(u, zero, v),
+                ],
+                [
+                    plane.semi_axes[0],
+                    m_2 * level / q_22.sqrt(),
+                    plane.semi_axes[1],
+                ],
+            ),
             scale,
             SEMI_AXIS_ROUNDINGS,
         )
     }
 }
 
-/// The squared sizes of M that Q depends on.
-struct Skewed<D> {
-    /// m₁₁²
-    first: D,
-    /// m₂₂²
-    second: D,
-    /// m₁₁²(1 + b²)
-    oblique: D,
-}
-
-impl<D: Double> Skewed<D> {
-    #[inline(always)]
-    fn quadric(&self, choice: Choice<D>) -> Quadric<D> {
-        let Choice {
-            alpha_1,
-            alpha_3,
-            nu,
-            q,
-        } = choice;
-        let (first, second) = (self.first, self.second);
-        let trace = nu + self.oblique;
-        let largest = trace.splat(LARGEST_SHARE) / trace.max(second);
-        let alpha_3 = alpha_3.min(largest);
-        let determinant = alpha_3 * first * (alpha_3 * nu) - alpha_3 * trace + 1.0;
-        let q_11 = -(alpha_3 * first) + 1.0;
-        let half = alpha_1 * 0.5;
-        Quadric {
-            alpha_1,
-            determinant,
-            q_11,
-            q_22: -(alpha_3 * second) + 1.0,
-            level: q / (alpha_3 * 4.0) + half * half * (q_11 / determinant),
-        }
-    }
-}
-
-/// Q and V of the module documentation.
-#[derive(Clone, Copy)]
-struct Quadric<D> {
+/// A row of the table in each lane. û is on the side of the lobe's axis.
+struct Row<D> {
     alpha_1: D,
-    /// Q₁₁Q₃₃ − b²
-    determinant: D,
-    q_11: D,
-    q_22: D,
-    /// V
-    level: D,
-}
-
-impl<D: Double> Quadric<D> {
-    /// V³/(Q₂₂(Q₁₁Q₃₃ − b²)), which grows with the volume.
-    #[inline(always)]
-    fn size(&self) -> D {
-        self.level * self.level * self.level / (self.determinant * self.q_22)
-    }
-
-    #[inline(always)]
-    fn smaller(one: Self, other: Self) -> Self {
-        let [alpha_1, determinant, q_11, q_22, level] = D::select_all(
-            one.size().le(other.size()),
-            [one.alpha_1, one.determinant, one.q_11, one.q_22, one.level],
-            [
-                other.alpha_1,
-                other.determinant,
-                other.q_11,
-                other.q_22,
-                other.level,
-            ],
-        );
-        Self {
-            alpha_1,
-            determinant,
-            q_11,
-            q_22,
-            level,
-        }
-    }
-}
-
-/// α₁, α₃, ν and q of the module documentation.
-#[derive(Clone, Copy)]
-struct Choice<D> {
-    alpha_1: D,
-    alpha_3: D,
+    alpha_2: D,
+    sine: D,
+    cosine: D,
     nu: D,
     q: D,
+    share: D,
 }
 
-impl<D: Double> Choice<D> {
-    /// The choice for a lobe of this `spread`, the root of (m₁₁² + m₂₂²)/2 + 2m₁₁²b².
+impl<D: Double> Row<D> {
+    /// The row for m₁₁ = `along` and k = `slant`.
     #[inline(always)]
-    fn along_axis(spread: D) -> Self {
-        /// Spreads above it are as good as this one.
-        const BROAD: f64 = 1.6;
-        let t = spread.min(spread.splat(BROAD));
-        let w = t * (t * (t * -0.005 - 0.1649) + 0.3246) + 0.5437;
-        let narrowed = t / spread;
-        let cubic = t * (t * (t * -0.0318 - 0.0331) + 0.1804) + 0.1564;
-        Self::of(w, cubic / t * narrowed * narrowed)
-    }
-
-    /// The choice of w₁ = `w` and α₃.
-    #[inline(always)]
-    fn of(w: D, alpha_3: D) -> Self {
-        /// The root of w³ + w² + w = 1, where γ is 1.
-        const ROOT: f64 = 0.543_689_012_692_076_4;
-        let over = w * (w * (w + 2.0) + 3.0);
-        // 1 − γ, with w₁³ + w₁² + w₁ − 1 as a product. 1 − α₁ is half of it.
-        let gap = (w - ROOT) * 2.0 * (w * (w + (1.0 + ROOT)) + 1.0 / ROOT) / over;
-        let half_gap = gap * 0.5;
-        let gamma = -gap + 1.0;
-        let q = w * w * (-(gamma * w) + 1.0) / ((w + 1.0) * (w * w + 1.0));
-        let q = q * Q_GROWTH;
+    fn of<N: Single<Double = D>>(along: D, slant: D) -> Self {
+        let zero = N::narrow(along.zero());
+        let numbers = [N::narrow(along), N::narrow(slant.abs()), zero, zero];
+        let [[alpha_1, alpha_2, sine, cosine], [nu, q, share, _]] = N::per_lane_quads(
+            numbers,
+            zero.le(zero),
+            #[inline(always)]
+            |[along, slant, ..], _| {
+                let [a, b, c, d, e, f, g, h] = *ltc_rows::row(along, slant);
+                [[a, b, c, d], [e, f, g, h]]
+            },
+        );
         Self {
-            alpha_1: -half_gap + 1.0,
-            alpha_3,
-            nu: half_gap * half_gap / q,
-            q,
+            alpha_1: alpha_1.widen(),
+            alpha_2: alpha_2.widen(),
+            sine: sine.widen().copysign(slant),
+            cosine: cosine.widen(),
+            nu: nu.widen(),
+            q: q.widen(),
+            share: share.widen(),
+        }
+    }
+}
+
+/// The axes of the image of a disc, and its semi-axes.
+struct PlaneAxes<D> {
+    axes: [[D; 2]; 2],
+    semi_axes: [D; 2],
+}
+
+impl<D: Double> PlaneAxes<D> {
+    /// From the rows of the matrix that the disc is the image under, and its positive determinant.
+    ///
+    /// The longer semi-axis is the root of the larger eigenvalue of the matrix times its transpose, which is a
+    /// sum of positive terms. The shorter is the quotient of the determinant by it.
+    #[inline(always)]
+    fn of([[a, b], [c, d]]: [[D; 2]; 2], determinant: D) -> Self {
+        let (first, second, in_common) = (a * a + b * b, c * c + d * d, a * c + b * d);
+        let half = (first - second) * 0.5;
+        let root = (half * half + in_common * in_common).sqrt();
+        let longer = ((first + second) * 0.5 + root).sqrt();
+        let shorter = determinant / longer;
+        // Of the angle, at most 45°, by which the axes are turned.
+        let least = half.splat(f64::MIN_POSITIVE);
+        let tangent = in_common / (half.abs() + root).max(least);
+        let cosine = half.splat(1.0) / (tangent * tangent + 1.0).sqrt();
+        let is_first = half.zero().le(half);
+        let sine = cosine * tangent;
+        let sine = D::select(is_first, sine, -sine);
+        let semi_axes = D::select_all(is_first, [longer, shorter], [shorter, longer]);
+        Self {
+            axes: [[cosine, sine], [-sine, cosine]],
+            semi_axes,
         }
     }
 }

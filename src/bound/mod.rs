@@ -15,6 +15,8 @@ mod half_space;
 mod lambert;
 #[cfg(feature = "ltc")]
 mod ltc;
+#[cfg(feature = "ltc")]
+mod ltc_rows;
 mod paper;
 mod phong;
 mod principal_axes;

@@ -34,8 +34,11 @@ const MAXIMUM_ROUNDINGS: u16 = 2;
 ///
 /// One matrix and one factor ρ cannot follow a Fresnel factor over the lobe. The relative L2 error for F = 1
 /// is below 6 % up to 45° and 10 % at 60°, and grows to a half at grazing incidence. For F0 = 0.04 it is up to
-/// 18 % at 45° and 43 % at 60°. `cargo run --release --example report -- --study ltsd` makes the map, and
-/// compares pictures.
+/// 18 % at 45° and 43 % at 60°. The bound follows the lobe, so roulette is unbiased for the picture that these
+/// lobes make. That picture differs from GGX's, in linear values up to 1, by a root mean square of 0.005 at most
+/// for a plane below one light (α = 0.3, seen from 45°), and by 0.005 to 0.015 where a metal lights metals, which
+/// is more than the 0.002 to 0.006 of the source. `cargo run --release --example report -- --study ltsd` makes
+/// the map, and compares pictures and times.
 ///
 /// # Which direction is fixed
 ///
@@ -43,6 +46,14 @@ const MAXIMUM_ROUNDINGS: u16 = 2;
 /// up by ω_o gives the same value, as a reciprocal BRDF would. But the fit is not reciprocal. Exchanging the
 /// directions changes the BRDF by as much as the fit errs: at α = 0.2 by 1 % between 20° and 40°, and by 26 %
 /// between 30° and 80°. At a receiver the fixed direction is that to the eye.
+///
+/// # When it pays
+///
+/// The value takes 0.6 of the time of a [`GgxLobe`](crate::GgxLobe)'s with Schlick's factor, and half of it in
+/// lanes. Direction, roulette and sum are the same for both, so that a light of a list takes 0.75 to 0.8 of the
+/// time (Zen 4, AVX-512). But the lobe takes five times as long to make, 0.1 µs. So it pays at lights that are
+/// made once. At receivers, which are made anew in each frame, and whose lobe is evaluated for accepted lights
+/// alone, it pays from about 150 lights in the list of a pixel on.
 ///
 /// # Edges
 ///
@@ -275,31 +286,26 @@ struct Plane {
 impl Plane {
     fn of(incidence: Incidence) -> Self {
         let [normal, incoming] = [incidence.normal, incidence.incoming].map(Vector3::<f32>::from);
-        let [n, w] = [normal, incoming].map(|v| unit(v.widen()));
-        let lengths = normal.widen().length() * incoming.widen().length();
-        let cross = normal.widen().cross(incoming.widen());
-        let length = cross.length();
-        let across = if length > 0.0 {
-            cross / length
+        let over = [normal, incoming].map(|v| 1.0 / v.widen().length());
+        let (n, w) = (normal.widen() * over[0], incoming.widen() * over[1]);
+        let cross = n.cross(w);
+        let sine = cross.length();
+        let across = if sine > 0.0 {
+            cross * (1.0 / sine)
         } else {
             // At normal incidence the plane is arbitrary.
             let (any, _) = normal.any_orthonormal_pair();
-            unit(n.cross(any.widen()))
+            let perpendicular = n.cross(any.widen());
+            perpendicular * (1.0 / perpendicular.length())
         };
-        let cosine = exact_dot(normal, incoming) / lengths;
-        let mirror = unit(Vector3::combine([(2.0 * n.dot(w), n), (-1.0, w)]));
         Self {
             normal: n,
-            mirror,
+            mirror: Vector3::combine([(2.0 * n.dot(w), n), (-1.0, w)]),
             across,
-            cosine,
-            sine: length / lengths,
+            cosine: exact_dot(normal, incoming) * (over[0] * over[1]),
+            sine,
         }
     }
-}
-
-fn unit(v: Vector3<f64>) -> Vector3<f64> {
-    v / v.length()
 }
 
 impl Lobe for LtcLobe {

@@ -40,17 +40,15 @@ fn interpolated<const K: usize>(start: usize, x: f64, y: f64) -> [f64; K] {
     let ((i, u), (j, v)) = (knot_and_rest(x), knot_and_rest(y));
     let mut sum = [0.0; K];
     for (i, u) in [(i, 1.0 - u), (i + 1, u)] {
-        for (j, v) in [(j, 1.0 - v), (j + 1, v)] {
-            let first = start + (i * KNOTS + j) * K;
-            for (k, sum) in sum.iter_mut().enumerate() {
-                let at = 2 * (first + k);
-                let count = u16::from_le_bytes([BYTES[at], BYTES[at + 1]]);
-                *sum += u * v * f64::from(count);
+        // Two knots side by side.
+        let first = 2 * (start + (i * KNOTS + j) * K);
+        let (near, far) = BYTES[first..first + 4 * K].split_at(2 * K);
+        for (knot, v) in [(near, 1.0 - v), (far, v)] {
+            let weight = u * v * (1.0 / COUNTS);
+            for (sum, bytes) in sum.iter_mut().zip(knot.chunks_exact(2)) {
+                *sum += weight * f64::from(u16::from_le_bytes([bytes[0], bytes[1]]));
             }
         }
-    }
-    for sum in &mut sum {
-        *sum /= COUNTS;
     }
     sum
 }

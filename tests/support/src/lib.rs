@@ -15,6 +15,7 @@ pub mod direct_port;
 pub mod generators;
 pub mod ggx_nodes;
 pub mod ltc_errors;
+pub mod ltc_inequality;
 pub mod parts;
 pub mod quadrature;
 pub mod reference;

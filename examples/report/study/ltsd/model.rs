@@ -1,6 +1,6 @@
 //! One frame with a model of what glossy surfaces reflect: lights, lists, and receivers, on one core.
 
-use common::frame::{GlossyLight, Tiles, timed};
+use common::frame::{GlossyLight, Subregion, Tiles, timed};
 use stochastic_light_culling::{
     BatchBuilder, Bounded, Culler, Direction, Ellipsoid, GgxLobe, Incidence, Interleave,
     LightBatch, LightLists, LtcLobe, PointBlock, ProjectedEllipsoid, RadianceEstimator, Receiver,
@@ -86,10 +86,10 @@ pub struct Lit {
     pub picture: Picture,
     /// To make the lobes of all lights.
     pub make_ms: f64,
-    /// To bound, project and cull.
-    pub cull_ms: f64,
-    /// To make receivers, and to sum what they reflect.
-    pub shade_ms: f64,
+    /// To bound, project and cull the lights of each subregion.
+    pub cull_ms: Vec<f64>,
+    /// To make the receivers of each subregion, and to sum what they reflect.
+    pub shade_ms: Vec<f64>,
     /// Lights in the list of a pixel, and those that it accepts, in the mean over pixels that see a surface.
     pub lights_per_pixel: [f64; 2],
 }
@@ -109,27 +109,26 @@ impl Setting<'_> {
         let mut culler = Culler::<ProjectedEllipsoid>::new();
         let mut lists: Vec<LightLists> = parts.iter().map(|_| LightLists::new()).collect();
         let mut batch = LightBatch::new();
-        let mut cull = || {
-            for ((part, subregion), lists) in
-                parts.iter().zip(self.tiles.subregions()).zip(&mut lists)
-            {
+        let mut cull = || -> Vec<f64> {
+            let frame = parts.iter().zip(self.tiles.subregions()).zip(&mut lists);
+            let one = |((part, subregion), lists): ((&Part<M>, &Subregion), &mut LightLists)| {
                 batch.clear();
-                let with_xi = (0..).zip(&part.lights).map(|(i, (vpl, xi))| (i, vpl, *xi));
+                let with_xi = (0..).zip(&part.lights);
+                let with_xi = with_xi.map(|(i, (vpl, xi))| (i, vpl, *xi));
                 builder.add(with_xi, &mut batch);
                 culler
                     .cull(&batch, &subregion.depths, lists)
                     .expect("fewer pairs than a u32 counts");
-            }
+            };
+            frame.map(one_timed(one)).collect()
         };
         // The first time makes room. Like a later frame, the second does not.
         cull();
-        let ((), cull_ms) = timed(cull);
-        let (shaded, shade_ms) = timed(|| {
+        let cull_ms = cull();
+        let (picture, lights_per_pixel, shade_ms) =
             self.shade(&parts, &roulette, |subregion, tile, interval| {
                 lists[subregion].of(tile, interval).to_vec()
-            })
-        });
-        let (picture, lights_per_pixel) = shaded;
+            });
         Lit {
             picture,
             make_ms,
@@ -175,7 +174,7 @@ impl Setting<'_> {
         parts: &[Part<M>],
         roulette: &Roulette,
         list_of: impl Fn(usize, [u32; 2], u32) -> Vec<u32>,
-    ) -> (Picture, [f64; 2]) {
+    ) -> (Picture, [f64; 2], Vec<f64>) {
         let surfaces = &self.subject.surfaces;
         let eye = self.subject.camera.to_world_space(Vec3::ZERO);
         let frame = self.subject.frame(self.interleave, self.delta);
@@ -184,54 +183,57 @@ impl Setting<'_> {
             .expect("a mean of areas");
         let mut picture = vec![[0.0; 3]; surfaces.surfaces.len()];
         let mut counts = [0_u64; 3];
-        let batches: Vec<ShadingBatch<M>> = parts
-            .iter()
-            .map(|part| {
-                let mut batch = ShadingBatch::new();
-                batch.extend(part.lights.iter().map(|(vpl, xi)| (vpl, *xi)));
-                batch
-            })
-            .collect();
-        for group in self.groups {
-            let (batch, tints) = (&batches[group.subregion], &parts[group.subregion].tints);
-            let list = list_of(group.subregion, group.tile, group.interval);
-            counts[0] += group.pixels.len() as u64;
-            counts[1] += (group.pixels.len() * list.len()) as u64;
-            let mut receivers = group.pixels.iter().map(|pixel| {
-                let surface = &surfaces.surfaces[*pixel];
-                let direction = |v| Direction::new(v).unwrap_or(Direction::Y);
-                let incidence = Incidence {
-                    normal: direction(surface.normal),
-                    incoming: direction(eye - surface.position),
-                };
-                Receiver {
-                    position: surface.position,
-                    lobe: M::new(self.gloss[1], incidence),
-                }
-            });
-            for pixels in group.pixels.chunks(PointBlock::LEN) {
-                let Some(block) = ReceiverBlock::take(&mut receivers) else {
-                    continue;
-                };
-                let mut sums = [[0.0; PointBlock::LEN]; 3];
-                estimator.reflected_at_block(batch, &list, &block, |light, reflected| {
-                    counts[2] += u64::from(light.accepted.count_ones());
-                    let tint = tints[light.light as usize];
-                    for (sums, tint) in sums.iter_mut().zip(tint) {
-                        for (sum, reflected) in sums.iter_mut().zip(reflected) {
-                            *sum += reflected * tint;
-                        }
+        let mut batch = ShadingBatch::new();
+        let is_same = |a: &Group, b: &Group| a.subregion == b.subregion;
+        let subregions = self.groups.chunk_by(is_same);
+        let mut shade = |groups: &[Group]| {
+            let part = &parts[groups[0].subregion];
+            batch.clear();
+            batch.extend(part.lights.iter().map(|(vpl, xi)| (vpl, *xi)));
+            for group in groups {
+                let list = list_of(group.subregion, group.tile, group.interval);
+                counts[0] += group.pixels.len() as u64;
+                counts[1] += (group.pixels.len() * list.len()) as u64;
+                let mut receivers = group.pixels.iter().map(|pixel| {
+                    let surface = &surfaces.surfaces[*pixel];
+                    let direction = |v| Direction::new(v).unwrap_or(Direction::Y);
+                    let incidence = Incidence {
+                        normal: direction(surface.normal),
+                        incoming: direction(eye - surface.position),
+                    };
+                    Receiver {
+                        position: surface.position,
+                        lobe: M::new(self.gloss[1], incidence),
                     }
                 });
-                for (lane, pixel) in pixels.iter().enumerate() {
-                    picture[*pixel] = sums.map(|sums| sums[lane]);
+                for pixels in group.pixels.chunks(PointBlock::LEN) {
+                    let Some(block) = ReceiverBlock::take(&mut receivers) else {
+                        continue;
+                    };
+                    let mut sums = [[0.0; PointBlock::LEN]; 3];
+                    estimator.reflected_at_block(&batch, &list, &block, |light, reflected| {
+                        counts[2] += u64::from(light.accepted.count_ones());
+                        let tint = part.tints[light.light as usize];
+                        for (sums, tint) in sums.iter_mut().zip(tint) {
+                            for (sum, reflected) in sums.iter_mut().zip(reflected) {
+                                *sum += reflected * tint;
+                            }
+                        }
+                    });
+                    for (lane, pixel) in pixels.iter().enumerate() {
+                        picture[*pixel] = sums.map(|sums| sums[lane]);
+                    }
                 }
             }
-        }
+        };
+        let shade_ms = subregions.map(one_timed(&mut shade)).collect();
         let [pixels, listed, accepted] = counts.map(|count| count as f64);
-        (
-            picture,
-            [listed, accepted].map(|count| count / pixels.max(1.0)),
-        )
+        let per_pixel = [listed, accepted].map(|count| count / pixels.max(1.0));
+        (picture, per_pixel, shade_ms)
     }
+}
+
+/// The milliseconds that `step` takes, for each that it is called with.
+fn one_timed<T>(mut step: impl FnMut(T)) -> impl FnMut(T) -> f64 {
+    move |item| timed(|| step(item)).1
 }
