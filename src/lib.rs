@@ -83,13 +83,116 @@
 //! - Directions point away from the surface. A [`Direction`] has unit length to within rounding; where a
 //!   function takes a direction as a `Vec3`, it must have unit length to 10⁻⁴.
 //! - Camera space has x to the right, y up and z = depth, positive ahead, for an engine's view space of
-//!   either handedness ([`Camera`]). Pixel (0, 0) is at the top left, whether NDC y points up or, as in
+//!   either handedness ([`Camera`], and [`Orthographic`] for parallel rays). Pixel (0, 0) is at the top left, whether NDC y points up or, as in
 //!   Vulkan, down.
 //! - Lengths are in the unit of the scene. Angles are in radians, solid angles in sr, flux in W, radiant
 //!   intensity in W/sr, radiance in W/(m²·sr). A light of intensity I has the radiance I/l² at distance l.
 //! - α is the GGX roughness. The *perceptual* roughness of artists is usually √α.
 //! - n is the surface normal. ω_i and ω_o point to where light comes from and goes to, and ω_h is the half
 //!   vector. μ = ω_i·n, μ_o = ω_o·n, k = 1 − α². u = 2⁻²⁴ is the unit roundoff of `f32`.
+//!
+//! # Views
+//!
+//! A [`Camera`] has a [`Perspective`] or an [`Orthographic`] projection, and is made of an engine's two matrices
+//! ([`Camera::new`], [`Camera::orthographic`], or [`AnyCamera::new`] for either) or by hand ([`Camera::look_at`],
+//! [`Camera::orthographic_look_at`]). The projection is a type parameter of the camera, and of projected shapes and their
+//! batches. So a program that has one kind contains nothing of the other, and shapes of one are not tested in a batch of
+//! the other. Tiles of an orthographic view are boxes. There is no eye, so [`Orthographic`] says where its depths begin.
+//!
+//! *Jitter* is part of the projection matrix, or [`Camera::jittered`]. `TileDepths::set_view` follows the camera without
+//! allocating.
+//!
+//! Several views of a frame share lights, ξ, kept bounds and a `ShadingBatch`, none of which knows of a camera. They also
+//! share a batch and a culler, one after the other; views that are culled at the same time need one for each. Each view
+//! has its own tiles and its own lists. Nothing is allocated after the first frame:
+//!
+//! ```
+//! use std::f32::consts::FRAC_PI_2;
+//! use stochastic_light_culling::{
+//!     BatchBuilder, Camera, ConstantLobe, Culler, DepthInterval, Error, LightBatch, LightLists,
+//!     ProjectedSphere, Projection, Roulette, Seed, TileDepths, TileGrid, Vpl,
+//!     glam::Vec3,
+//! };
+//!
+//! /// What all views with one kind of projection share.
+//! struct Shared<P: Projection> {
+//!     batch: LightBatch<ProjectedSphere<P>>,
+//!     culler: Culler<ProjectedSphere<P>>,
+//! }
+//!
+//! /// What a view keeps from frame to frame.
+//! struct View<P: Projection> {
+//!     camera: Camera<P>,
+//!     tiles: TileDepths,
+//!     lists: LightLists,
+//! }
+//!
+//! impl<P: Projection> View<P> {
+//!     fn new(camera: Camera<P>, grid: &TileGrid) -> Result<Self, Error> {
+//!         let tiles = TileDepths::new(grid, &camera, 8)?;
+//!         Ok(Self { camera, tiles, lists: LightLists::new() })
+//!     }
+//!
+//!     fn cull(
+//!         &mut self,
+//!         grid: &TileGrid,
+//!         slices: impl Iterator<Item = DepthInterval> + Clone,
+//!         lights: &[Vpl<ConstantLobe>],
+//!         frame: u32,
+//!         shared: &mut Shared<P>,
+//!     ) -> Result<(), Error> {
+//!         // The camera may have moved.
+//!         self.tiles.set_view(grid, &self.camera)?;
+//!         for tile in grid.tiles() {
+//!             // In an engine, of the depth buffer of this view.
+//!             self.tiles.set(tile, slices.clone());
+//!         }
+//!         let (roulette, seed) = (Roulette::new(0.1)?, Seed(0).frame(frame));
+//!         shared.batch.clear();
+//!         let with_xi = (0..).zip(lights).map(|(i, light)| (i, light, seed.xi(i)));
+//!         BatchBuilder::new(&roulette, &self.camera).add(with_xi, &mut shared.batch);
+//!         shared.culler.cull(&shared.batch, &self.tiles, &mut self.lists)?;
+//!         Ok(())
+//!     }
+//! }
+//!
+//! let lights: Vec<_> = (0..500)
+//!     .map(|i| Vpl::point(Vec3::new((i % 25) as f32, 1.0, (i / 25) as f32), 1.0))
+//!     .collect::<Result<_, _>>()?;
+//! let (eye, grid) = (Vec3::new(12.0, 2.0, 10.0), TileGrid::new([256, 256], 32)?);
+//!
+//! // The faces of a cube around a probe. A split screen is the same with two cameras.
+//! let mut faces = Vec::new();
+//! for (ahead, up) in [
+//!     (Vec3::X, Vec3::Y), (Vec3::NEG_X, Vec3::Y), (Vec3::Y, Vec3::Z),
+//!     (Vec3::NEG_Y, Vec3::Z), (Vec3::Z, Vec3::Y), (Vec3::NEG_Z, Vec3::Y),
+//! ] {
+//!     let camera = Camera::look_at(eye, eye + ahead, up, FRAC_PI_2, 1.0, 0.1..100.0)?;
+//!     faces.push(View::new(camera, &grid)?);
+//! }
+//! // Cascades of a map from above, each twice as wide as the one before.
+//! let mut cascades = Vec::new();
+//! for height in [8.0, 16.0, 32.0] {
+//!     let camera = Camera::orthographic_look_at(eye, eye - Vec3::Y, Vec3::Z, height, 1.0, -10.0..10.0)?;
+//!     cascades.push(View::new(camera, &grid)?);
+//! }
+//!
+//! // Each frame:
+//! let mut to_faces = Shared { batch: LightBatch::new(), culler: Culler::new() };
+//! for face in &mut faces {
+//!     let slices = DepthInterval::new(0.1, 100.0)?.exponential_slices(8);
+//!     face.cull(&grid, slices, &lights, 0, &mut to_faces)?;
+//! }
+//! let mut to_cascades = Shared { batch: LightBatch::new(), culler: Culler::new() };
+//! for cascade in &mut cascades {
+//!     let [near, far] = [0.0, 1.0].map(|value| cascade.camera.depth(value));
+//!     let slices = DepthInterval::new(near, far)?.uniform_slices(8);
+//!     cascade.cull(&grid, slices, &lights, 0, &mut to_cascades)?;
+//! }
+//! assert!(faces.iter().all(|face| !face.lists.is_empty()));
+//! assert!(cascades.iter().all(|cascade| !cascade.lists.is_empty()));
+//! # Ok::<(), Error>(())
+//! ```
 //!
 //! # Errors and panics
 //!
@@ -121,11 +224,12 @@
 //! - α from 2⁻²⁰ to 1, every μ > 0, sharpnesses to 2²², and ξ from 2⁻³²;
 //! - spot lights with an outer cone from 10⁻³ rad to 180°, of which the numbers are [`SpotLobe::versines`];
 //! - ranges from 10⁻¹² to 10¹², and lights up to 10⁶ ranges from the origin and from the eye;
-//! - views of any rotation, handedness and offset, with corners up to 89.7° from the viewing direction;
+//! - views of any rotation, handedness and offset: perspectives with corners up to 89.7° from the viewing direction,
+//!   and orthographic views with edges up to 10¹² from their axis;
 //! - lights around and behind the eye, and depth intervals of zero thickness.
 //!
 //! Outside these ranges a bound is only larger, up to the whole view. The radius of a projected sphere is at
-//! least 10⁻¹⁸, and the semi-axes of a projected ellipsoid are at least 10⁻³⁰.
+//! least 10⁻¹⁸, and the semi-axes of a projected ellipsoid are at least 10⁻²⁴.
 //!
 //! F of a [`Dielectric`] and of a [`Conductor`] is largest at an end of a range of angles, which is proved for
 //! all of their indices. Three bounds rest on more than proofs by hand and counted roundings. The ellipsoids of
@@ -250,7 +354,10 @@ pub use project::{
     stretch_matrix, stretch_rotation,
 };
 pub use touch::{BoxTest, TileTest};
-pub use view::{Camera, DepthInterval, Interleave, PixelRectangle, TileGrid, TileRectangle};
+pub use view::{
+    AnyCamera, Camera, DepthInterval, Interleave, Orthographic, Perspective, PixelRectangle,
+    Projection, TileGrid, TileRectangle,
+};
 
 /// The vectors and matrices of the interface.
 pub use glam;

@@ -1,7 +1,7 @@
 //! Constructors refuse what they cannot use, and say what it was.
 
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Camera, Conductor,
+    AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, AnyCamera, Camera, Conductor,
     ConstantLobe, DepthInterval, Dielectric, Direction, DistanceWindow, Ellipsoid, Error, Ggx,
     Incidence, Interleave, LambertLobe, NoFresnel, PhongLobe, Roulette, Schlick, Sphere,
     SphericalGaussian, SpotLobe, TileGrid, TileRectangle, Vpl, Xi,
@@ -210,13 +210,13 @@ fn shapes_that_are_none() {
     assert!(TileRectangle::new(low, high).is_err());
     assert!(TileRectangle::new(low, Vec2::NAN).is_err());
     assert!(TileRectangle::new(Vec2::INFINITY, high).is_err());
-    assert!(TileRectangle::new(low, Vec2::new(1.0, 1e6)).is_ok());
-    let beyond = Vec2::new(1.0, 1_000_000.1);
+    assert!(TileRectangle::new(low, Vec2::new(1.0, 1e12)).is_ok());
+    let beyond = Vec2::new(1.0, 1.000_001e12);
     for rectangle in [
         TileRectangle::new(low, beyond),
         TileRectangle::new(-beyond, low),
     ] {
-        assert!(rectangle.unwrap_err().to_string().contains("1000000.1"));
+        assert!(rectangle.unwrap_err().to_string().contains("within ±10¹²"));
     }
 }
 
@@ -334,6 +334,160 @@ fn matrices_of_another_kind() {
     ] {
         assert!(Camera::new(Mat4::IDENTITY, wrong).is_err(), "{wrong}");
     }
+}
+
+fn orthographic(edges: [f32; 4], planes: [f32; 2]) -> Mat4 {
+    let ([left, right, bottom, top], [near, far]) = (edges, planes);
+    Mat4::from_cols(
+        Vec4::new(2.0 / (right - left), 0.0, 0.0, 0.0),
+        Vec4::new(0.0, 2.0 / (top - bottom), 0.0, 0.0),
+        Vec4::new(0.0, 0.0, 1.0 / (near - far), 0.0),
+        Vec4::new(
+            (left + right) / (left - right),
+            (bottom + top) / (bottom - top),
+            near / (near - far),
+            1.0,
+        ),
+    )
+}
+
+#[test]
+fn orthographic_matrices_that_see_nothing() {
+    let refused = |projection: Mat4, reason: &str| {
+        for error in [
+            Camera::orthographic(Mat4::IDENTITY, projection).unwrap_err(),
+            AnyCamera::new(Mat4::IDENTITY, projection).unwrap_err(),
+        ] {
+            let message = error.to_string();
+            assert!(message.contains("projection matrix"), "{message}");
+            assert!(message.contains(reason), "{message}, not {reason}");
+        }
+    };
+    let edges = [-4.0, 4.0, -2.0, 3.0];
+    let usual = orthographic(edges, [-1.0, 9.0]);
+    for valid in [
+        usual,
+        // Mirrored, upside down, and with exchanged planes, which is reversed z.
+        orthographic([4.0, -4.0, 3.0, -2.0], [9.0, -1.0]),
+        orthographic([-1e12, 1e12, -1e-30, 1e-30], [0.0, 1e12]),
+        Mat4::IDENTITY,
+    ] {
+        assert!(
+            Camera::orthographic(Mat4::IDENTITY, valid).is_ok(),
+            "{valid}"
+        );
+        assert!(AnyCamera::new(Mat4::IDENTITY, valid).is_ok(), "{valid}");
+    }
+    let size = "width and height must be positive";
+    let mut flat = usual;
+    flat.y_axis.y = 0.0;
+    refused(flat, size);
+    refused(orthographic([-1e12, 2e12, -1.0, 1.0], [0.0, 1.0]), size);
+    refused(
+        orthographic([1e10, 1e10 + 2e4, -1.0, 1.0], [0.0, 1e13]),
+        "near and far planes",
+    );
+    // Of no width, or between planes that are one.
+    refused(orthographic([4.0, 4.0, -2.0, 3.0], [0.0, 1.0]), "finite");
+    refused(orthographic(edges, [1.0, 1.0]), "finite");
+    refused(orthographic(edges, [f32::NAN, 1.0]), "finite");
+    let mut same_planes = usual;
+    same_planes.z_axis.z = f32::MAX;
+    refused(same_planes, "near and far planes");
+    same_planes.z_axis.z = 0.0;
+    refused(same_planes, "near and far planes");
+    for element in 0..16 {
+        let mut broken = usual.to_cols_array();
+        broken[element] = f32::NAN;
+        let broken = Mat4::from_cols_array(&broken);
+        assert!(AnyCamera::new(Mat4::IDENTITY, broken).is_err());
+        assert!(Camera::orthographic(Mat4::IDENTITY, broken).is_err());
+    }
+    for (column, row) in [(0, 1), (1, 0), (2, 0), (2, 1), (0, 2), (1, 2)] {
+        let mut sheared = usual;
+        sheared.col_mut(column)[row] = 0.1;
+        refused(sheared, "zeros off its pattern");
+    }
+    let transposed = Camera::orthographic(Mat4::IDENTITY, usual.transpose()).unwrap_err();
+    assert!(
+        transposed.to_string().contains("stored by columns"),
+        "{transposed}"
+    );
+    assert!(AnyCamera::new(Mat4::IDENTITY, usual.transpose()).is_err());
+    refused(Mat4::ZERO, "last row");
+    let perspective = Mat4::from_cols(Vec4::X, Vec4::Y, -Vec4::W - Vec4::Z, -0.1 * Vec4::Z);
+    assert!(Camera::orthographic(Mat4::IDENTITY, perspective).is_err());
+    assert!(AnyCamera::new(Mat4::IDENTITY, perspective).is_ok());
+    // What takes a perspective says what takes this.
+    let error = Camera::new(Mat4::IDENTITY, usual).unwrap_err().to_string();
+    assert!(error.contains("`Camera::orthographic` takes"), "{error}");
+    // As for a perspective, the view is checked too.
+    for view in [Mat4::from_scale(Vec3::splat(1.01)), Mat4::ZERO, Mat4::NAN] {
+        assert!(Camera::orthographic(view, usual).is_err());
+    }
+    let far = Mat4::from_translation(Vec3::new(0.0, 0.0, f32::INFINITY));
+    assert!(Camera::orthographic(far, usual).is_err());
+}
+
+#[test]
+fn orthographic_cameras_that_see_nothing() {
+    let look_at = |height: f32, aspect: f32, near: f32, far: f32| {
+        Camera::orthographic_look_at(Vec3::ZERO, Vec3::X, Vec3::Y, height, aspect, near..far)
+    };
+    assert!(look_at(10.0, 1.0, -5.0, 5.0).is_ok());
+    for (camera, reason) in [
+        (look_at(0.0, 1.0, 0.0, 1.0), "height of the view is 0"),
+        (look_at(-1.0, 1.0, 0.0, 1.0), "height of the view is -1"),
+        (
+            look_at(f32::NAN, 1.0, 0.0, 1.0),
+            "height of the view is NaN",
+        ),
+        (
+            look_at(f32::INFINITY, 1.0, 0.0, 1.0),
+            "height of the view is inf",
+        ),
+        (look_at(1.0, 0.0, 0.0, 1.0), "aspect ratio is 0"),
+        (look_at(1.0, f32::NAN, 0.0, 1.0), "aspect ratio is NaN"),
+        (look_at(1.0, 1.0, f32::NAN, 1.0), "near plane is NaN"),
+        (
+            look_at(1.0, 1.0, f32::NEG_INFINITY, 1.0),
+            "near plane is -inf",
+        ),
+        (look_at(1.0, 1.0, 1.0, 1.0), "far plane is 1"),
+        (look_at(1.0, 1.0, 2.0, 1.0), "far plane is 1"),
+        (look_at(1.0, 1.0, 0.0, f32::INFINITY), "far plane is inf"),
+        (look_at(1.0, 1.0, 0.0, f32::NAN), "far plane is NaN"),
+        (look_at(1e13, 1.0, 0.0, 1.0), "width and height"),
+        (look_at(1.0, 1.0, 0.0, 1e13), "near and far planes"),
+    ] {
+        let message = camera.unwrap_err().to_string();
+        assert!(message.contains(reason), "{message}, not {reason}");
+    }
+}
+
+#[test]
+fn jitter_that_leaves_no_view() {
+    let perspective = look_at(1.0, 1.0, 0.1, 10.0).unwrap();
+    let parallel = Camera::orthographic_look_at(Vec3::ZERO, Vec3::X, Vec3::Y, 2.0, 1.0, 0.0..1.0);
+    let parallel = parallel.unwrap();
+    let size = [640, 480];
+    for (size, pixels) in [
+        (size, [f32::NAN, 0.0]),
+        (size, [0.0, f32::INFINITY]),
+        (size, [f32::MAX, 0.0]),
+        ([0, 480], [0.5, 0.5]),
+    ] {
+        assert!(
+            perspective.jittered(size, pixels).is_err(),
+            "{size:?} {pixels:?}"
+        );
+        assert!(
+            parallel.jittered(size, pixels).is_err(),
+            "{size:?} {pixels:?}"
+        );
+    }
+    assert!(perspective.jittered(size, [0.5, -0.5]).is_ok());
+    assert_eq!(parallel.jittered(size, [0.0, 0.0]), Ok(parallel));
 }
 
 /// Perspective matrices of each kind are accepted, and refused if they are stored by rows.

@@ -3,11 +3,11 @@
 
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BoundStrategy, Bounded, BoxTest, Camera,
-    ConstantLobe, Dielectric, Direction, Ellipsoid, Focal, Fresnel, Ggx, GgxLobe, LambertLobe,
-    LightBatch, Lobe, LtcLobe, MaskingShadowing, NoFresnel, OwnBound, Paper, PhongLobe, Project,
-    ProjectedEllipsoid, ProjectedSphere, Roulette, Schlick, Seed, Sphere, SphericalGaussian,
-    Spheroid, SpotLobe, Tight, Triaxial, Vpl, Xi, glam::Vec3,
+    AnisotropicGgx, AnisotropicGgxLobe, BatchBuilder, BoundStrategy, Bounded, Camera, ConstantLobe,
+    Dielectric, Direction, Ellipsoid, Focal, Fresnel, Ggx, GgxLobe, LambertLobe, LightBatch, Lobe,
+    LtcLobe, MaskingShadowing, NoFresnel, Orthographic, OwnBound, Paper, PhongLobe, Project,
+    Projected, Projection, Roulette, Schlick, Seed, Sphere, SphericalGaussian, Spheroid, SpotLobe,
+    Tight, Triaxial, Vpl, Xi, glam::Vec3,
 };
 use support::{
     generators::{self, cases, log_uniform},
@@ -19,6 +19,7 @@ use support::{
 struct Frame {
     roulette: Roulette,
     camera: Camera,
+    parallel: Camera<Orthographic>,
     lights: Vec<Parts>,
     /// How many of the lights are added first, before the others.
     first: usize,
@@ -32,57 +33,46 @@ fn frame() -> impl Strategy<Value = Frame> {
         1 => Just(f32::MAX),
     ];
     let lights = prop::collection::vec(parts(), 0..150);
-    (delta, generators::view(), lights, 0..150_usize).prop_map(|(delta, view, lights, first)| {
+    let views = (generators::view(), generators::orthographic_view());
+    (delta, views, lights, 0..150_usize).prop_map(|(delta, (view, parallel), lights, first)| {
+        let parallel = Camera::orthographic(parallel.from_world, parallel.projection);
         Frame {
             roulette: Roulette::new(delta).unwrap(),
             camera: Camera::new(view.from_world, view.projection).unwrap(),
+            parallel: parallel.unwrap(),
             first: first.min(lights.len()),
             lights,
         }
     })
 }
 
-trait Bits {
-    fn bits(&self) -> Vec<u32>;
-}
-
-impl Bits for ProjectedEllipsoid {
-    fn bits(&self) -> Vec<u32> {
-        let matrix = self.matrix().to_cols_array();
-        let numbers = matrix.into_iter().chain(self.center().to_array());
-        numbers.map(f32::to_bits).collect()
-    }
-}
-
-impl Bits for ProjectedSphere {
-    fn bits(&self) -> Vec<u32> {
-        let numbers = self.center().to_array().into_iter();
-        let numbers = numbers.chain([self.radius_squared()]);
-        numbers.map(f32::to_bits).collect()
-    }
+/// All fields of a shape, bounds included, such that different bits are different.
+fn bits(shape: &impl Projected) -> String {
+    format!("{shape:?}")
 }
 
 impl Frame {
     /// Whether `add` adds to a batch, of the lights in two parts, the shapes that are `expected`: `None`
     /// for a light that reaches nowhere.
-    fn same<T: BoxTest + Bits>(
+    fn same<P: Projection, T: Projected>(
         &self,
+        camera: &Camera<P>,
         expected: &[Option<T>],
-        add: impl Fn(&BatchBuilder, std::ops::Range<usize>, &mut LightBatch<T>),
+        add: impl Fn(&BatchBuilder<P>, std::ops::Range<usize>, &mut LightBatch<T>),
     ) -> Result<(), TestCaseError> {
         let expected: Vec<_> = (0..)
             .zip(expected)
-            .filter_map(|(number, shape)| Some((number, shape.as_ref()?.bits())))
+            .filter_map(|(number, shape)| Some((number, bits(shape.as_ref()?))))
             .collect();
         for lanes in [16, 8, 4] {
-            let builder = BatchBuilder::new(&self.roulette, &self.camera).with_lanes(lanes);
+            let builder = BatchBuilder::new(&self.roulette, camera).with_lanes(lanes);
             let mut batch = LightBatch::new();
             // Twice, for what the first leaves behind.
             for _ in 0..2 {
                 batch.clear();
                 add(&builder, 0..self.first, &mut batch);
                 add(&builder, self.first..self.lights.len(), &mut batch);
-                let found = batch.iter().map(|(number, shape)| (number, shape.bits()));
+                let found = batch.iter().map(|(number, shape)| (number, bits(&shape)));
                 prop_assert_eq!(&found.collect::<Vec<_>>(), &expected);
                 prop_assert_eq!(batch.len(), expected.len());
             }
@@ -98,15 +88,28 @@ impl Frame {
     ) -> Result<(), TestCaseError>
     where
         L: Lobe + 'static,
-        B: BoundStrategy<L, Shape: Project<Projected: BoxTest + Bits>>,
+        B: BoundStrategy<L, Shape: Project>,
+    {
+        self.same_lights_in(&self.camera, strategy, lobe)
+    }
+
+    fn same_lights_in<P: Projection, L, B>(
+        &self,
+        camera: &Camera<P>,
+        strategy: B,
+        lobe: impl Fn(&Parts) -> L,
+    ) -> Result<(), TestCaseError>
+    where
+        L: Lobe + 'static,
+        B: BoundStrategy<L, Shape: Project>,
     {
         let lights: Vec<_> = self.lights.iter().map(|p| p.vpl(lobe(p))).collect();
         let expected: Vec<_> = lights
             .iter()
             .map(|(light, xi)| light.bound_by(strategy, &self.roulette, *xi))
-            .map(|bound| Project::project(&bound, &self.camera))
+            .map(|bound| Project::project(&bound, camera))
             .collect();
-        self.same(&expected, |builder, range, batch| {
+        self.same(camera, &expected, |builder, range, batch| {
             let indexed = (range.start as u32..).zip(&lights[range]);
             let lights = indexed.map(|(i, (light, xi))| (i, light, *xi));
             builder.add_by(strategy, lights, batch);
@@ -123,18 +126,24 @@ impl Frame {
         self.same_lights(OwnBound, lobe)
     }
 
-    /// Of bounds that are kept.
-    fn same_placed<B: Project<Projected: BoxTest + Bits> + 'static>(
+    /// Of bounds that are kept, before cameras of both projections.
+    fn same_placed<B: Project + 'static>(&self, bounds: &[B]) -> Result<(), TestCaseError> {
+        self.same_placed_in(&self.camera, bounds)?;
+        self.same_placed_in(&self.parallel, bounds)
+    }
+
+    fn same_placed_in<P: Projection, B: Project + 'static>(
         &self,
+        camera: &Camera<P>,
         bounds: &[B],
     ) -> Result<(), TestCaseError> {
         let scale = |light: &Parts| self.roulette.scale(light.flux, light.xi);
         let placed = self.lights.iter().zip(bounds);
         let expected: Vec<_> = placed
             .map(|(light, bound)| bound.placed(light.position, scale(light)))
-            .map(|bound| Project::project(&bound, &self.camera))
+            .map(|bound| Project::project(&bound, camera))
             .collect();
-        self.same(&expected, |builder, range, batch| {
+        self.same(camera, &expected, |builder, range, batch| {
             let placed = (range.start as u32..).zip(&self.lights[range.clone()]);
             let placed = placed.zip(&bounds[range]);
             let placed =
@@ -204,6 +213,18 @@ proptest! {
             LtcLobe::new(Ggx::new(light.roughness).unwrap(), NoFresnel, light.incidence())
         })?;
         frame.same_lights(OwnBound, |light| Windowed(light.lit.normal))?;
+    }
+
+    /// What comes before the projection does not know of it.
+    #[test]
+    fn lights_before_parallel_rays(frame in frame()) {
+        let spot = |light: &Parts| {
+            let outer = std::f32::consts::PI * light.roughness;
+            SpotLobe::new(light.share * outer, outer, light.lit.normal).unwrap()
+        };
+        frame.same_lights_in(&frame.parallel, Tight, spot)?;
+        frame.same_lights_in(&frame.parallel, Tight, |light| light.ggx(NoFresnel))?;
+        frame.same_lights_in(&frame.parallel, Paper, |_| ConstantLobe)?;
     }
 
     #[test]

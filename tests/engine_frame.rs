@@ -6,41 +6,67 @@ mod light_pass;
 #[path = "../examples/engine/world.rs"]
 mod world;
 
-use support::command;
+use stochastic_light_culling::{AnyCamera, Camera, Projection};
+use support::{command, with_camera};
 
 use light_pass::LightPass;
 use world::{Handedness, World, lights};
 
 const SIZE: [u32; 2] = [256, 144];
 
-fn engine(handedness: Handedness) -> (World, LightPass) {
-    let world = World::new(SIZE, handedness);
-    let lights = lights(2000, 0.1).unwrap();
-    let camera = world.camera(0).unwrap();
-    let pass = LightPass::new(lights, 0.01, &camera, SIZE, 16).unwrap();
-    (world, pass)
+/// The view of a frame.
+fn camera(world: &World, frame: u32) -> AnyCamera {
+    let (view, projection) = world.matrices(frame);
+    AnyCamera::new(view, projection).unwrap()
+}
+
+fn pass<P: Projection>(camera: &Camera<P>) -> LightPass<P> {
+    LightPass::new(lights(2000, 0.1).unwrap(), 0.01, camera, SIZE, 16).unwrap()
+}
+
+/// Those that views of either hand and of either projection make.
+fn worlds() -> impl Iterator<Item = World> {
+    let hands = [Handedness::Right, Handedness::Left].into_iter();
+    hands.flat_map(|hand| {
+        [false, true].map(|is_orthographic| World::new(SIZE, hand, is_orthographic))
+    })
 }
 
 #[test]
 fn frames_after_the_first_allocate_nothing() {
-    for handedness in [Handedness::Right, Handedness::Left] {
-        let (mut world, mut pass) = engine(handedness);
-        let mut draw = |frame| {
-            let camera = world.camera(frame).unwrap();
-            let depths = world.draw_depths(&camera);
-            let counters = pass.cull(&camera, depths, frame).unwrap();
-            assert!(counters.pairs > 0 && pass.lights_in_reach() > 0);
-            assert!(
-                pass.shade(&camera, depths)
-                    .iter()
-                    .any(|radiance| *radiance > 0.0)
-            );
-        };
-        let first = allocation_counter::measure(|| draw(0));
+    fn draw<P: Projection>(
+        world: &mut World,
+        pass: &mut LightPass<P>,
+        camera: &Camera<P>,
+        frame: u32,
+    ) {
+        let depths = world.draw_depths(frame);
+        let counters = pass.cull(camera, depths, frame).unwrap();
+        assert!(counters.pairs > 0 && pass.lights_in_reach() > 0);
+        let radiance = pass.shade(camera, depths);
+        assert!(radiance.iter().any(|radiance| *radiance > 0.0));
+    }
+    fn frames<P: Projection>(mut world: World, cameras: &[Camera<P>]) {
+        let mut pass = pass(&cameras[0]);
+        let first = allocation_counter::measure(|| draw(&mut world, &mut pass, &cameras[0], 0));
         assert!(first.count_total > 0, "nothing is counted");
-        for frame in 1..40 {
-            let later = allocation_counter::measure(|| draw(frame));
-            assert_eq!(later.count_total, 0, "frame {frame}, {handedness:?}");
+        for (camera, frame) in cameras.iter().zip(0..) {
+            let later = allocation_counter::measure(|| draw(&mut world, &mut pass, camera, frame));
+            assert_eq!(later.count_total, 0, "frame {frame}");
+        }
+    }
+    for world in worlds() {
+        let (mut perspective, mut orthographic) = (Vec::new(), Vec::new());
+        for frame in 0..40 {
+            match camera(&world, frame) {
+                AnyCamera::Perspective(camera) => perspective.push(camera),
+                AnyCamera::Orthographic(camera) => orthographic.push(camera),
+            }
+        }
+        if orthographic.is_empty() {
+            frames(world, &perspective);
+        } else {
+            frames(world, &orthographic);
         }
     }
 }
@@ -49,18 +75,22 @@ fn frames_after_the_first_allocate_nothing() {
 /// may add a light here or there.
 #[test]
 fn views_of_either_handedness_see_the_same_lights() {
-    let lengths = [Handedness::Right, Handedness::Left].map(|handedness| {
-        let (mut world, mut pass) = engine(handedness);
-        let camera = world.camera(0).unwrap();
-        pass.cull(&camera, world.draw_depths(&camera), 0).unwrap();
-        pass.list_lengths().collect::<Vec<_>>()
-    });
-    let in_a_row = 2 * (SIZE[0] as usize / 16);
-    let [right, left] = lengths.each_ref().map(|lengths| lengths.chunks(in_a_row));
-    for (right, left) in right.zip(left) {
-        let mirrored = left.chunks(2).rev().flatten();
-        for (right, left) in right.iter().zip(mirrored) {
-            assert!(right.abs_diff(*left) <= 1 + right / 20, "{right}, {left}");
+    for is_orthographic in [false, true] {
+        let lengths = [Handedness::Right, Handedness::Left].map(|handedness| {
+            let mut world = World::new(SIZE, handedness, is_orthographic);
+            with_camera!(&camera(&world, 0), camera => {
+                let mut pass = pass(camera);
+                pass.cull(camera, world.draw_depths(0), 0).unwrap();
+                pass.list_lengths().collect::<Vec<_>>()
+            })
+        });
+        let in_a_row = 2 * (SIZE[0] as usize / 16);
+        let [right, left] = lengths.each_ref().map(|lengths| lengths.chunks(in_a_row));
+        for (right, left) in right.zip(left) {
+            let mirrored = left.chunks(2).rev().flatten();
+            for (right, left) in right.iter().zip(mirrored) {
+                assert!(right.abs_diff(*left) <= 1 + right / 20, "{right}, {left}");
+            }
         }
     }
 }
@@ -68,19 +98,25 @@ fn views_of_either_handedness_see_the_same_lights() {
 /// A list holds what its pixels need: the mean over frames is the light of all lights.
 #[test]
 fn the_mean_over_frames_is_what_all_lights_give() {
+    for is_orthographic in [false, true] {
+        let world = World::new(SIZE, Handedness::Right, is_orthographic);
+        with_camera!(&camera(&world, 0), camera => mean_is_exact(world, camera));
+    }
+}
+
+fn mean_is_exact<P: Projection>(mut world: World, camera: &Camera<P>) {
     const FRAMES: u32 = 400;
-    let (mut world, mut pass) = engine(Handedness::Right);
-    let camera = world.camera(0).unwrap();
-    let depths = world.draw_depths(&camera).to_vec();
+    let mut pass = pass(camera);
+    let depths = world.draw_depths(0).to_vec();
     let pixel = [128, 54];
     let mut total = 0.0;
     for frame in 0..FRAMES {
-        pass.cull(&camera, &depths, frame).unwrap();
-        total += f64::from(pass.radiance(&camera, &depths, pixel));
+        pass.cull(camera, &depths, frame).unwrap();
+        total += f64::from(pass.radiance(camera, &depths, pixel));
     }
     let [last, shaded] = [
-        pass.radiance(&camera, &depths, pixel),
-        pass.shade(&camera, &depths)[(pixel[1] * SIZE[0] + pixel[0]) as usize],
+        pass.radiance(camera, &depths, pixel),
+        pass.shade(camera, &depths)[(pixel[1] * SIZE[0] + pixel[0]) as usize],
     ];
     assert_eq!(last.to_bits(), shaded.to_bits());
     let point = camera.point_in_pixel(
@@ -109,6 +145,7 @@ fn prints_a_line_for_each_frame() {
     for arguments in [
         &["--frames=3"][..],
         &["--frames=3", "--left-handed"],
+        &["--frames=3", "--orthographic"],
         &["--frames=3", "--lights=0"],
     ] {
         let output = command::run("engine", arguments);

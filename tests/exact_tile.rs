@@ -2,11 +2,12 @@
 
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    Camera, DepthInterval, Ellipsoid, HalfSpace, PixelRectangle, Sphere, TileRectangle, TileTest,
+    AnyCamera, Camera, DepthInterval, Ellipsoid, HalfSpace, PixelRectangle, Sphere, TileRectangle,
+    TileTest,
     glam::{Mat3, Vec2, Vec3},
 };
-use support::generators;
-use support::reference::{Frustum, Shape, Vector};
+use support::reference::{Frustum, Shape, Vector, camera::View};
+use support::{generators, with_camera};
 
 /// From round to needles as the least α makes them.
 fn ellipsoid() -> impl Strategy<Value = Ellipsoid> {
@@ -31,16 +32,24 @@ fn room() -> impl Strategy<Value = f64> {
     prop_oneof![1 => Just(0.0), 8 => generators::log_uniform(1e-4, 1.0), 1 => Just(1.0)]
 }
 
-/// A tile about a point of camera space, with room in shares of its depth.
+/// A tile about a point of camera space, with room in shares of its depth, or, of boxes, of `extent`.
 fn tile_about(
+    view: &View,
     point: Vector,
+    extent: f64,
     [left, right, below, above, before, behind]: [f64; 6],
 ) -> Option<(TileRectangle, DepthInterval)> {
     let [x, y, depth] = point.0;
     if depth <= 0.0 {
         return None;
     }
-    let [x, y] = [x / depth, y / depth];
+    let (per_slope, extent) = if view.is_orthographic() {
+        (extent, extent)
+    } else {
+        (depth, 1.0)
+    };
+    let [left, right, below, above] = [left, right, below, above].map(|room| room * extent);
+    let [x, y] = [x, y].map(|x| x / per_slope * extent);
     let corner = |x: f64, y: f64| Vec2::new(x as f32, y as f32);
     let tile =
         TileRectangle::new(corner(x - left, y - below), corner(x + right, y + above)).ok()?;
@@ -49,11 +58,16 @@ fn tile_about(
 }
 
 fn decides_as_distance(
+    view: &View,
     test: &dyn TileTest,
     (tile, depths): &(TileRectangle, DepthInterval),
     (matrix, center, radius): (Mat3, Vec3, f64),
 ) -> Result<(), TestCaseError> {
-    let frustum = Frustum::new(matrix, tile, depths);
+    let frustum = if view.is_orthographic() {
+        Frustum::of_box(matrix, tile, depths)
+    } else {
+        Frustum::new(matrix, tile, depths)
+    };
     let distance = frustum.distance(center.into());
     let rim = 1e-12 * (radius + f64::from(center.length()) + frustum.extent());
     let touched = test.touches_exactly(tile, depths);
@@ -77,35 +91,41 @@ proptest! {
     #[test]
     fn of_ellipsoids(
         ellipsoid in ellipsoid(),
-        view in generators::view(),
+        view in generators::any_view(),
         distance in generators::log_uniform(1e-1, 1e3),
         (unit, level) in (generators::unit_vector(), 0.3..3.0),
         room in prop::array::uniform6(room()),
     ) {
         let view = view.aimed_at(ellipsoid.center(), distance * f64::from(ellipsoid.semi_axes().max_element()));
-        let camera = Camera::new(view.from_world, view.projection).unwrap();
-        let stretch = ellipsoid.project(&camera).unwrap();
+        let camera = AnyCamera::new(view.from_world, view.projection).unwrap();
         let point = view.to_camera_space(Shape::from(ellipsoid).point(unit * level));
-        if let Some(tile) = tile_about(point, room) {
-            decides_as_distance(&stretch, &tile, (stretch.matrix(), stretch.center(), 1.0))?;
+        let extent = 2.0 * f64::from(ellipsoid.semi_axes().max_element());
+        if let Some(tile) = tile_about(&view, point, extent, room) {
+            with_camera!(&camera, camera => {
+                let stretch = ellipsoid.project(camera).unwrap();
+                decides_as_distance(&view, &stretch, &tile, (stretch.matrix(), stretch.center(), 1.0))
+            })?;
         }
     }
 
     #[test]
     fn of_spheres(
         radius in generators::log_uniform(1e-4, 1e4),
-        view in generators::view(),
+        view in generators::any_view(),
         distance in generators::log_uniform(1e-1, 1e3),
         (unit, level) in (generators::unit_vector(), 0.3..3.0),
         room in prop::array::uniform6(room()),
     ) {
         let view = view.aimed_at(Vec3::ZERO, distance * radius);
-        let camera = Camera::new(view.from_world, view.projection).unwrap();
-        let sphere = Sphere::new(Vec3::ZERO, radius as f32).unwrap().project(&camera).unwrap();
+        let camera = AnyCamera::new(view.from_world, view.projection).unwrap();
+        let sphere = Sphere::new(Vec3::ZERO, radius as f32).unwrap();
         let point = view.to_camera_space(unit * (level * radius));
-        if let Some(tile) = tile_about(point, room) {
-            let radius = f64::from(sphere.radius_squared()).sqrt();
-            decides_as_distance(&sphere, &tile, (Mat3::IDENTITY, sphere.center(), radius))?;
+        if let Some(tile) = tile_about(&view, point, 2.0 * radius, room) {
+            with_camera!(&camera, camera => {
+                let sphere = sphere.project(camera).unwrap();
+                let radius = f64::from(sphere.radius_squared()).sqrt();
+                decides_as_distance(&view, &sphere, &tile, (Mat3::IDENTITY, sphere.center(), radius))
+            })?;
         }
     }
 }

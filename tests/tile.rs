@@ -2,29 +2,59 @@
 
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    Bounded, Camera, DepthInterval, Ellipsoid, Ggx, GgxLobe, HalfSpace, Incidence, NoFresnel,
-    Paper, PixelRectangle, Sphere, TileGrid, TileRectangle,
+    AnyCamera, Bounded, Camera, DepthInterval, Ellipsoid, Ggx, GgxLobe, HalfSpace, Incidence,
+    NoFresnel, Paper, PixelRectangle, Sphere, TileGrid, TileRectangle, TileTest,
     glam::{DMat3, DVec3, Vec2, Vec3},
 };
-use support::generators;
-use support::reference::{Shape, Vector, exact::outward};
+use support::reference::{Shape, Vector, camera::View, exact::outward};
+use support::{generators, with_camera};
 
-/// The thinnest tile that holds `point` of camera space, if it lies before the eye and in the view.
-fn tile_around(camera: &Camera, point: Vector) -> Option<(TileRectangle, DepthInterval)> {
-    let [x, y, depth] = point.0;
-    if depth <= 1e-30 {
-        return None;
+/// A camera of either projection, and what the tests need of it.
+struct Seen {
+    view: View,
+    camera: AnyCamera,
+}
+
+impl Seen {
+    fn new(view: View) -> Self {
+        let camera = AnyCamera::new(view.from_world, view.projection).unwrap();
+        Self { view, camera }
     }
-    let (u, v) = (outward((x / depth).into()), outward((y / depth).into()));
-    let tile = TileRectangle::new(Vec2::new(u[0], v[0]), Vec2::new(u[1], v[1])).ok()?;
-    let [near, far] = outward(depth.into());
-    let all = PixelRectangle {
-        min: [0, 0],
-        max: [1, 1],
-    };
-    let view = camera.tile_rectangle([1, 1], all);
-    let inside = tile.min().cmpge(view.min()).all() && tile.max().cmple(view.max()).all();
-    inside.then(|| (tile, DepthInterval::new(near, far).unwrap()))
+
+    fn ellipsoid(&self, shape: &Ellipsoid) -> Box<dyn TileTest> {
+        with_camera!(&self.camera, camera => Box::new(shape.project(camera).unwrap()))
+    }
+
+    fn sphere(&self, shape: &Sphere) -> Box<dyn TileTest> {
+        with_camera!(&self.camera, camera => Box::new(shape.project(camera).unwrap()))
+    }
+
+    fn half_space(&self, shape: &HalfSpace) -> Box<dyn TileTest> {
+        with_camera!(&self.camera, camera => Box::new(shape.project(camera)))
+    }
+
+    /// The thinnest tile that holds a point of the world, if it lies before the eye and in the view.
+    fn tile_around(&self, point: Vector) -> Option<(TileRectangle, DepthInterval)> {
+        let [x, y, depth] = self.view.to_camera_space(point).0;
+        if depth <= 1e-30 {
+            return None;
+        }
+        let per_slope = if self.view.is_orthographic() {
+            1.0
+        } else {
+            depth
+        };
+        let [u, v] = [x, y].map(|x| outward((x / per_slope).into()));
+        let tile = TileRectangle::new(Vec2::new(u[0], v[0]), Vec2::new(u[1], v[1])).ok()?;
+        let [near, far] = outward(depth.into());
+        let all = PixelRectangle {
+            min: [0, 0],
+            max: [1, 1],
+        };
+        let view = with_camera!(&self.camera, camera => camera.tile_rectangle([1, 1], all));
+        let inside = tile.min().cmpge(view.min()).all() && tile.max().cmple(view.max()).all();
+        inside.then(|| (tile, DepthInterval::new(near, far).unwrap()))
+    }
 }
 
 /// A tile like that but with room to spare: the point is at its edge or within it.
@@ -96,19 +126,19 @@ proptest! {
     #[test]
     fn tile_with_a_point_of_the_ellipsoid_is_touched(
         ellipsoid in generators::ellipsoid(),
-        view in generators::view(),
+        view in generators::any_view(),
         distance in generators::log_uniform(1e-2, 1e3),
         aim in any::<bool>(),
         points in prop::collection::vec((generators::unit_vector(), prop_oneof![3 => Just(1.0), 1 => 0.0..1.0]), 30),
         room in (prop::array::uniform4(0.0..0.3_f32), 0.1..1.0_f32, 1.0..10.0_f32),
     ) {
         let view = if aim { view.aimed_at(ellipsoid.center(), distance) } else { view };
-        let camera = Camera::new(view.from_world, view.projection).unwrap();
-        let stretch = ellipsoid.project(&camera).unwrap();
+        let seen = Seen::new(view);
+        let stretch = seen.ellipsoid(&ellipsoid);
         let shape = Shape::from(ellipsoid);
         for (unit, depth) in points {
-            let seen = view.to_camera_space(shape.point(unit * (depth * (1.0 - 1e-12))));
-            let Some(thin) = tile_around(&camera, seen) else { continue };
+            let point = shape.point(unit * (depth * (1.0 - 1e-12)));
+            let Some(thin) = seen.tile_around(point) else { continue };
             prop_assert!(stretch.touches_exactly(&thin.0, &thin.1), "{thin:?}");
             let (sides, near, far) = room;
             let wide = widened(thin, sides, [near, far]);
@@ -120,18 +150,18 @@ proptest! {
     fn tile_with_a_point_of_the_sphere_is_touched(
         center in generators::position(),
         radius in generators::log_uniform(1e-4, 1e4),
-        view in generators::view(),
+        view in generators::any_view(),
         aim in any::<bool>(),
         points in prop::collection::vec(generators::unit_vector(), 30),
     ) {
         let view = if aim { view.aimed_at(center, 2.0) } else { view };
-        let camera = Camera::new(view.from_world, view.projection).unwrap();
+        let seen = Seen::new(view);
         let sphere = Sphere::new(center, radius as f32).unwrap();
-        let before_camera = sphere.project(&camera).unwrap();
+        let before_camera = seen.sphere(&sphere);
         let shape = Shape::from(sphere);
         for unit in points {
-            let seen = view.to_camera_space(shape.point(unit * (1.0 - 1e-12)));
-            let Some((tile, depths)) = tile_around(&camera, seen) else { continue };
+            let point = shape.point(unit * (1.0 - 1e-12));
+            let Some((tile, depths)) = seen.tile_around(point) else { continue };
             prop_assert!(before_camera.touches_exactly(&tile, &depths), "{tile:?} {depths:?}");
         }
     }
@@ -140,28 +170,28 @@ proptest! {
     fn tile_with_a_point_on_the_lit_side_is_touched(
         lit in generators::lit(),
         position in generators::position(),
-        view in generators::view(),
+        view in generators::any_view(),
         aim in any::<bool>(),
         points in prop::collection::vec(
             (generators::unit_vector(), generators::log_uniform(1e-6, 1e3), generators::log_uniform(1e-12, 1.0)),
             30),
     ) {
         let view = if aim { view.aimed_at(position, 2.0) } else { view };
-        let camera = Camera::new(view.from_world, view.projection).unwrap();
-        let half_space = HalfSpace::new(position, lit.normal).unwrap().project(&camera);
+        let seen = Seen::new(view);
+        let half_space = seen.half_space(&HalfSpace::new(position, lit.normal).unwrap());
         let normal = lit.surface.normal;
         for (way, distance, height) in points {
             // Along the surface, and a little or a lot above it.
             let above = normal.cross(way) + normal * height;
-            let seen = view.to_camera_space(Vector::from(position) + above * distance);
-            let Some((tile, depths)) = tile_around(&camera, seen) else { continue };
+            let point = Vector::from(position) + above * distance;
+            let Some((tile, depths)) = seen.tile_around(point) else { continue };
             prop_assert!(half_space.touches(&tile, &depths), "{tile:?} {depths:?}");
 
             // And well below it, seen through a thin tile, not.
             let below = normal.cross(way) * 0.1 - normal;
-            let seen = view.to_camera_space(Vector::from(position) + below * distance);
+            let point = Vector::from(position) + below * distance;
             let far = position.length() + view.from_world.w_axis.truncate().length();
-            let Some((tile, depths)) = tile_around(&camera, seen) else { continue };
+            let Some((tile, depths)) = seen.tile_around(point) else { continue };
             let resolved = distance > 1e-4 * f64::from(far) + 1e-3 * f64::from(depths.far());
             prop_assert!(!resolved || !half_space.touches(&tile, &depths), "{tile:?} {depths:?}");
         }
@@ -174,18 +204,18 @@ proptest! {
         lit in generators::lit(),
         position in generators::position(),
         scale in generators::log_uniform(1e-3, 1e3),
-        view in generators::view(),
+        view in generators::any_view(),
         points in prop::collection::vec(generators::unit_vector(), 30),
     ) {
         let view = view.aimed_at(position, 3.0);
-        let camera = Camera::new(view.from_world, view.projection).unwrap();
+        let seen = Seen::new(view);
         let lobe = GgxLobe::new(Ggx::new(roughness).unwrap(), NoFresnel, Incidence { normal: lit.normal, incoming: lit.incoming });
         let spheroid = lobe.unit_bound_by(Paper).placed(position, scale as f32);
-        let stretch = Ellipsoid::from(spheroid).project(&camera).unwrap();
+        let stretch = seen.ellipsoid(&spheroid.into());
         let shape = Shape::from(spheroid);
         for unit in points {
-            let seen = view.to_camera_space(shape.point(unit * (1.0 - 1e-12)));
-            let Some((tile, depths)) = tile_around(&camera, seen) else { continue };
+            let point = shape.point(unit * (1.0 - 1e-12));
+            let Some((tile, depths)) = seen.tile_around(point) else { continue };
             prop_assert!(stretch.touches_exactly(&tile, &depths), "{tile:?} {depths:?}");
         }
     }

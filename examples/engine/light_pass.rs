@@ -3,24 +3,25 @@
 
 use stochastic_light_culling::{
     BatchBuilder, Bounded, Camera, CullCounters, Culler, DepthInterval, Ellipsoid, Error, GgxLobe,
-    LightBatch, LightLists, PointBlock, ProjectedEllipsoid, RadianceEstimator, Roulette, Schlick,
-    Seed, ShadingBatch, TileDepths, TileGrid, Vpl, Xi, glam::Vec3, rank_along_curve,
+    LightBatch, LightLists, PointBlock, ProjectedEllipsoid, Projection, RadianceEstimator,
+    Roulette, Schlick, Seed, ShadingBatch, TileDepths, TileGrid, Vpl, Xi, glam::Vec3,
+    rank_along_curve,
 };
 
 pub type Light = Vpl<GgxLobe<Schlick>>;
 
 const SEED: u32 = 0;
 
-/// Lights that do not move, and all memory that a frame needs.
-pub struct LightPass {
+/// Lights that do not move, and all memory that a frame needs. For views of either projection.
+pub struct LightPass<P: Projection> {
     /// Each with the shape of its range, which no frame changes. Sorted so that a light's index is its rank.
     lights: Vec<(Light, Ellipsoid)>,
     roulette: Roulette,
     size: [u32; 2],
     grid: TileGrid,
     tiles: TileDepths,
-    batch: LightBatch<ProjectedEllipsoid>,
-    culler: Culler<ProjectedEllipsoid>,
+    batch: LightBatch<ProjectedEllipsoid<P>>,
+    culler: Culler<ProjectedEllipsoid<P>>,
     lists: LightLists,
     /// The same lights, with their ξ.
     shading: ShadingBatch<GgxLobe<Schlick>>,
@@ -28,12 +29,12 @@ pub struct LightPass {
     radiance: Vec<f32>,
 }
 
-impl LightPass {
+impl<P: Projection> LightPass<P> {
     /// For views like that of `camera`, of which no more than place and direction may change.
     pub fn new(
         lights: Vec<Light>,
         delta: f32,
-        camera: &Camera,
+        camera: &Camera<P>,
         size: [u32; 2],
         tile_size: u32,
     ) -> Result<Self, Error> {
@@ -60,14 +61,14 @@ impl LightPass {
     /// Lists the lights of each tile for this frame.
     pub fn cull(
         &mut self,
-        camera: &Camera,
+        camera: &Camera<P>,
         depth_buffer: &[f32],
         frame: u32,
     ) -> Result<CullCounters, Error> {
         let width = self.size[0];
         for tile in self.grid.tiles() {
             let pixels = self.grid.pixels(tile).pixels();
-            let depths = pixels.map(|[x, y]| camera.depth(depth_buffer[(y * width + x) as usize]));
+            let depths = pixels.map(|[x, y]| depth(camera, depth_buffer[(y * width + x) as usize]));
             self.tiles.set(tile, DepthInterval::modified_half_z(depths));
         }
 
@@ -86,7 +87,7 @@ impl LightPass {
 
     /// The estimate of the light that arrives at what each pixel shows, from the lights of its list: what a
     /// shader does next. Row by row, zero for sky.
-    pub fn shade(&mut self, camera: &Camera, depth_buffer: &[f32]) -> &[f32] {
+    pub fn shade(&mut self, camera: &Camera<P>, depth_buffer: &[f32]) -> &[f32] {
         let Self { size, tiles, .. } = self;
         let estimator = RadianceEstimator::new(&self.roulette);
         self.radiance.fill(0.0);
@@ -97,7 +98,7 @@ impl LightPass {
             }
             let mut pixels = self.grid.pixels(tile).pixels().filter_map(|pixel| {
                 let index = (pixel[1] * size[0] + pixel[0]) as usize;
-                let depth = camera.depth(depth_buffer[index]);
+                let depth = depth(camera, depth_buffer[index]);
                 let point = camera.point_in_pixel(*size, pixel, depth);
                 let is_here = tiles.interval_of(tile, depth) == Some(interval);
                 is_here.then(|| (index, camera.to_world_space(point)))
@@ -129,8 +130,9 @@ impl LightPass {
     }
 
     /// The same for a single pixel.
-    pub fn radiance(&self, camera: &Camera, depth_buffer: &[f32], pixel: [u32; 2]) -> f32 {
-        let depth = camera.depth(depth_buffer[(pixel[1] * self.size[0] + pixel[0]) as usize]);
+    pub fn radiance(&self, camera: &Camera<P>, depth_buffer: &[f32], pixel: [u32; 2]) -> f32 {
+        let index = (pixel[1] * self.size[0] + pixel[0]) as usize;
+        let depth = depth(camera, depth_buffer[index]);
         let tile = self.grid.tile_of(pixel);
         let Some(interval) = self.tiles.interval_of(tile, depth) else {
             return 0.0; // sky
@@ -153,6 +155,15 @@ impl LightPass {
     /// How many lights each depth interval of each tile has.
     pub fn list_lengths(&self) -> impl Iterator<Item = u32> + Clone + '_ {
         self.lists.ranges().iter().map(|[start, end]| end - start)
+    }
+}
+
+/// The depth of what the depth buffer has this value of. Infinite for sky, which lies at the far plane, if there is one.
+fn depth<P: Projection>(camera: &Camera<P>, value: f32) -> f32 {
+    if value > 0.0 {
+        camera.depth(value)
+    } else {
+        f32::INFINITY
     }
 }
 

@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use clap::Parser;
 use common::command::{self, say};
-use stochastic_light_culling::Error;
+use stochastic_light_culling::{Camera, Error, Projection, glam::Mat4};
 
 use light_pass::LightPass;
 use world::{Handedness, World, lights};
@@ -46,6 +46,10 @@ struct Arguments {
     /// Have view space look along +z, as in Direct3D, in place of −z, as in Bevy and wgpu
     #[arg(long)]
     left_handed: bool,
+
+    /// Look along parallel rays
+    #[arg(long)]
+    orthographic: bool,
 }
 
 fn main() -> ExitCode {
@@ -53,23 +57,39 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Error> {
+    if arguments.orthographic {
+        draw_frames(arguments, Camera::orthographic)
+    } else {
+        draw_frames(arguments, Camera::new)
+    }
+}
+
+/// Each kind of projection is compiled by itself. `camera` makes one of the engine's two matrices.
+fn draw_frames<P: Projection>(
+    arguments: &Arguments,
+    camera: impl Fn(Mat4, Mat4) -> Result<Camera<P>, Error>,
+) -> Result<(), Error> {
     let handedness = if arguments.left_handed {
         Handedness::Left
     } else {
         Handedness::Right
     };
     // When a level is loaded, and when the window changes its size.
-    let mut world = World::new(SIZE, handedness);
+    let mut world = World::new(SIZE, handedness, arguments.orthographic);
     let lights = lights(arguments.lights, arguments.alpha)?;
-    let camera = world.camera(0)?;
+    let camera_of = |world: &World, frame| {
+        let (view, projection) = world.matrices(frame);
+        camera(view, projection)
+    };
+    let camera = camera_of(&world, 0)?;
     let mut pass = LightPass::new(lights, arguments.delta, &camera, SIZE, TILE_SIZE)?;
 
     say(format_args!(
         "frame  in reach  lights/tile  most  tile tests  block tests  empty  radiance  cull ms  shade ms"
     ));
     for frame in 0..arguments.frames {
-        let camera = world.camera(frame)?;
-        let depth_buffer = world.draw_depths(&camera);
+        let camera = camera_of(&world, frame)?;
+        let depth_buffer = world.draw_depths(frame);
         let start = Instant::now();
         let counters = pass.cull(&camera, depth_buffer, frame)?;
         let cull_ms = start.elapsed().as_secs_f64() * 1e3;

@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 use stochastic_light_culling::{
-    BatchBuilder, Bounded, Camera, Culler, DepthInterval, DistanceWindow, Error, LightBatch,
-    LightLists, Lobe, PointBlock, Project, ProjectedBound, RadianceEstimator, Roulette, Seed,
-    ShadedPoint, ShadingBatch, TileDepths, TileGrid, TileTest, Xi, glam::Vec3,
+    BatchBuilder, Bounded, BoxTest, Camera, Culler, DepthInterval, DistanceWindow, Error,
+    LightBatch, LightLists, Lobe, Perspective, PointBlock, Project, ProjectedBound,
+    RadianceEstimator, Roulette, Seed, ShadedPoint, ShadingBatch, TileDepths, TileGrid, Xi,
+    glam::Vec3,
 };
 
 use crate::street::{Lamps, Surface};
@@ -109,8 +110,8 @@ pub fn by_roulette<L>(
     frame: u32,
 ) -> Result<Picture, Error>
 where
-    L: Bounded<Shape: Project<Projected: TileTest>> + Copy + Sync,
-    ProjectedBound<L>: stochastic_light_culling::BoxTest,
+    L: Bounded<Shape: Project> + Copy + Sync,
+    ProjectedBound<L>: BoxTest,
 {
     let mut batch = LightBatch::new();
     let seed = Seed(seed).frame(frame);
@@ -173,16 +174,18 @@ fn estimate<L: Lobe + Sync>(
 
 /// An engine's lights, each with a window that ends where its illuminance falls to `cut`. `bound` holds all of a
 /// lobe up to the radius.
-pub fn by_windows<
-    L: Lobe + Copy + Sync,
-    B: Project<Projected: stochastic_light_culling::BoxTest>,
->(
+pub fn by_windows<L, B>(
     view: &View,
     lamps: &Lamps<L>,
     cut: f32,
     peak: f32,
     bound: impl Fn(&L) -> B,
-) -> Result<Picture, Error> {
+) -> Result<Picture, Error>
+where
+    L: Lobe + Copy + Sync,
+    B: Project,
+    B::Projected<Perspective>: BoxTest,
+{
     let window = |i: usize| DistanceWindow::new((peak * lamps.lights[i].flux() / cut).sqrt());
     let windows = (0..lamps.lights.len())
         .map(window)

@@ -10,7 +10,7 @@ use crate::bound::{BoundStrategy, Bounded};
 use crate::light::{Roulette, Vpl, Vsgl, Xi};
 use crate::lobe::Lobe;
 use crate::project::{Project, ProjectedBound, ProjectedEllipsoid};
-use crate::view::Camera;
+use crate::view::{Camera, Perspective, Projection};
 
 /// Adds the lights of a frame to a [`LightBatch`], for a [`Culler`](crate::Culler).
 ///
@@ -46,17 +46,17 @@ use crate::view::Camera;
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct BatchBuilder {
-    frame: Frame,
+pub struct BatchBuilder<P = Perspective> {
+    frame: Frame<P>,
     level: Level,
 }
 
-impl BatchBuilder {
+impl<P: Projection> BatchBuilder<P> {
     /// Creates a builder for a frame with `roulette` and `camera`, with the widest vectors of this processor.
     /// Without the feature `std` the processor cannot be queried, and the vectors are those of the
     /// compilation target.
     #[must_use]
-    pub fn new(roulette: &Roulette, camera: &Camera) -> Self {
+    pub fn new(roulette: &Roulette, camera: &Camera<P>) -> Self {
         Self {
             frame: Frame {
                 roulette: *roulette,
@@ -82,7 +82,7 @@ impl BatchBuilder {
     pub fn add<'a, L: Bounded<Shape: Project>>(
         &self,
         lights: impl IntoIterator<Item = (u32, &'a Vpl<L>, Xi)>,
-        batch: &mut LightBatch<ProjectedBound<L>>,
+        batch: &mut LightBatch<ProjectedBound<L, P>>,
     ) {
         self.add_by(L::Strategy::default(), lights, batch);
     }
@@ -92,7 +92,7 @@ impl BatchBuilder {
         &self,
         strategy: B,
         lights: impl IntoIterator<Item = (u32, &'a Vpl<L>, Xi)>,
-        batch: &mut LightBatch<<B::Shape as Project>::Projected>,
+        batch: &mut LightBatch<<B::Shape as Project>::Projected<P>>,
     ) {
         let lights = lights.into_iter();
         let lights = lights.map(|(index, light, xi)| (index, (light, xi)));
@@ -127,7 +127,7 @@ impl BatchBuilder {
     pub fn add_vsgls<'a>(
         &self,
         lights: impl IntoIterator<Item = (u32, &'a Vsgl, Xi)>,
-        batch: &mut LightBatch<ProjectedEllipsoid>,
+        batch: &mut LightBatch<ProjectedEllipsoid<P>>,
     ) {
         let lights = lights.into_iter();
         let lights = lights.map(|(index, light, xi)| (index, (light, xi)));
@@ -142,7 +142,7 @@ impl BatchBuilder {
     pub fn add_placed<'a, B: Project>(
         &self,
         bounds: impl IntoIterator<Item = (u32, &'a B, Vec3, f32)>,
-        batch: &mut LightBatch<B::Projected>,
+        batch: &mut LightBatch<B::Projected<P>>,
     ) {
         let bounds = bounds.into_iter();
         let bounds =
@@ -155,7 +155,7 @@ impl BatchBuilder {
         &self,
         input: I,
         items: impl Iterator<Item = (u32, I::Item<'a>)>,
-        batch: &mut LightBatch<<I::Shape as Project>::Projected>,
+        batch: &mut LightBatch<<I::Shape as Project>::Projected<P>>,
     ) {
         let mut items = items.filter(|(_, item)| I::may_reach(*item));
         let Some((light, item)) = items.next() else {
@@ -180,7 +180,7 @@ impl BatchBuilder {
         &self,
         group: &Group<I>,
         count: usize,
-        batch: &mut LightBatch<<I::Shape as Project>::Projected>,
+        batch: &mut LightBatch<<I::Shape as Project>::Projected<P>>,
     ) {
         dispatch!(self.level, simd => group.append_to(simd, count, &self.frame, batch));
     }

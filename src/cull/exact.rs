@@ -149,7 +149,7 @@ impl ExactLists {
         simd: S,
         scene: &Scene<P>,
         pair: impl Fn(usize) -> usize,
-    ) -> Frustum<<F32Lanes<S> as Single>::Double> {
+    ) -> Frustum<<F32Lanes<S> as Single>::Double, P::Projection> {
         let (places, records) = (self.pairs.lights(), scene.batch.records());
         let shapes = load_records::<S, P>(
             simd,
@@ -171,6 +171,6 @@ impl ExactLists {
             down: [bottom, top],
             depths: [near, far],
         };
-        Frustum::new(P::image(&fields), tile.widen())
+        Frustum::new(P::image(&fields), P::clipped(&shapes, &tile).widen())
     }
 }

@@ -18,7 +18,7 @@ use crate::light::{Roulette, Vpl, Vsgl, Xi};
 use crate::lobe::Lobe;
 use crate::num::{F32Lanes, Quad, Real, Single, Vector3, load_quads};
 use crate::project::{Project, Projected};
-use crate::view::Camera;
+use crate::view::{Camera, Projection};
 
 /// A kind of input that a batch is built from.
 pub(super) trait BatchInput: Copy {
@@ -206,9 +206,9 @@ impl<B: Project> BatchInput for KeptBounds<B> {
 
 /// The parameters that all lights of a frame share.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
+pub(super) struct Frame<P> {
     pub roulette: Roulette,
-    pub camera: Camera,
+    pub camera: Camera<P>,
 }
 
 /// The number of lights of a group.
@@ -272,12 +272,12 @@ impl<I: BatchInput> Group<I> {
     /// Projects the first `count` items, of which there is at least one, and adds the shapes that are not empty
     /// to `batch`.
     #[inline(always)]
-    pub fn append_to<S: Simd>(
+    pub fn append_to<S: Simd, P: Projection>(
         &self,
         simd: S,
         count: usize,
-        frame: &Frame,
-        batch: &mut LightBatch<<I::Shape as Project>::Projected>,
+        frame: &Frame<P>,
+        batch: &mut LightBatch<<I::Shape as Project>::Projected<P>>,
     ) {
         // The processor can begin one vector while another waits for its roots.
         for first in (0..count).step_by(S::f32s::LEN) {
@@ -289,7 +289,12 @@ impl<I: BatchInput> Group<I> {
 
     /// Projects a vector of items. Returns the fields of the shapes, and which of them are not empty.
     #[inline(always)]
-    fn project<S: Simd>(&self, simd: S, first: usize, frame: &Frame) -> (Fields<I, S>, S::mask32s) {
+    fn project<S: Simd, P: Projection>(
+        &self,
+        simd: S,
+        first: usize,
+        frame: &Frame<P>,
+    ) -> (Fields<I, S, P>, S::mask32s) {
         let lanes = first..first + S::f32s::LEN;
         let [x, y, z, flux] = load_quads(simd, &self.placements[lanes.clone()]);
         let mut quads = [[F32Lanes::new(simd, 0.0); 4]; MAX_QUADS];
@@ -308,5 +313,5 @@ impl<I: BatchInput> Group<I> {
 }
 
 /// The fields of the projected shapes of a vector of items.
-type Fields<I, S> =
-    <<<I as BatchInput>::Shape as Project>::Projected as Projected>::Fields<F32Lanes<S>>;
+type Fields<I, S, P> =
+    <<<I as BatchInput>::Shape as Project>::Projected<P> as Projected>::Fields<F32Lanes<S>>;

@@ -2,7 +2,7 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use crate::base::Error;
-use crate::view::{Camera, DepthInterval, TileGrid, TileRectangle};
+use crate::view::{Camera, DepthInterval, Projection, TileGrid, TileRectangle};
 
 /// A grid of tiles, and for each tile one or more depth intervals that hold its surfaces.
 ///
@@ -53,7 +53,11 @@ impl TileDepths {
     ///
     /// [`Error::Size`] if `intervals` is zero, or there are more than 2¹⁶ tiles in a row or a column, or more
     /// than 2²⁷ intervals in all tiles together. So many intervals take at most 2 GiB.
-    pub fn new(grid: &TileGrid, camera: &Camera, intervals: u32) -> Result<Self, Error> {
+    pub fn new<P: Projection>(
+        grid: &TileGrid,
+        camera: &Camera<P>,
+        intervals: u32,
+    ) -> Result<Self, Error> {
         Self::from_rectangles(grid.size(), intervals, |tile| camera.tile(grid, tile))
     }
 
@@ -88,7 +92,11 @@ impl TileDepths {
     /// # Errors
     ///
     /// As [`new`](Self::new); the tiles are then unchanged.
-    pub fn set_view(&mut self, grid: &TileGrid, camera: &Camera) -> Result<(), Error> {
+    pub fn set_view<P: Projection>(
+        &mut self,
+        grid: &TileGrid,
+        camera: &Camera<P>,
+    ) -> Result<(), Error> {
         self.set_rectangles(grid.size(), |tile| camera.tile(grid, tile))
     }
 

@@ -61,7 +61,7 @@ pub struct GpuEllipsoid {
 impl GpuEllipsoid {
     /// Creates the record of `ellipsoid`, the bound of the light with index `light`.
     #[must_use]
-    pub fn new(ellipsoid: &ProjectedEllipsoid, light: u32) -> Self {
+    pub fn new<P>(ellipsoid: &ProjectedEllipsoid<P>, light: u32) -> Self {
         let m = ellipsoid.matrix();
         Self {
             x_and_y_axes: [m.x_axis.x, m.x_axis.y, m.y_axis.x, m.y_axis.y],
@@ -97,8 +97,8 @@ pub struct GpuSphere {
     pub radius_squared: f32,
 }
 
-impl From<&ProjectedSphere> for GpuSphere {
-    fn from(sphere: &ProjectedSphere) -> Self {
+impl<P> From<&ProjectedSphere<P>> for GpuSphere {
+    fn from(sphere: &ProjectedSphere<P>) -> Self {
         Self {
             center: sphere.center().to_array(),
             radius_squared: sphere.radius_squared(),

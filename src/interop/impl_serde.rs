@@ -11,7 +11,12 @@ use crate::lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, Dielectric, Fresnel, Ggx, GgxLobe, Incidence,
     LambertLobe, Lobe, PhongLobe, Schlick, SphericalGaussian, SpotLobe,
 };
-use crate::view::{Camera, CameraParts, DepthInterval, Interleave, TileGrid, TileRectangle};
+use crate::view::{
+    Camera, CameraParts, DepthInterval, Interleave, Orthographic, Perspective, TileGrid,
+    TileRectangle,
+};
+
+type OrthographicCamera = Camera<Orthographic>;
 
 /// Implements both traits: for each type the fields that are saved, and the constructor that reads them.
 macro_rules! saved {
@@ -93,17 +98,29 @@ saved! {
     |camera| Camera {
         rotation: [[f32; 3]; 3] = camera.parts().rotation.to_cols_array_2d(),
         translation: [f32; 3] = camera.parts().translation.into(),
-        slope_scale: [f32; 2] = camera.parts().slope_scale.into(),
-        slope_offset: [f32; 2] = camera.parts().slope_offset.into(),
-        depth_numerator: f32 = camera.parts().depth_numerator,
-        depth_offset: f32 = camera.parts().depth_offset
+        slope_scale: [f32; 2] = camera.parts().scale.into(),
+        slope_offset: [f32; 2] = camera.parts().offset.into(),
+        depth_numerator: f32 = camera.parts().projection.depths()[0],
+        depth_offset: f32 = camera.parts().projection.depths()[1]
     } => Camera::from_parts(CameraParts {
         rotation: Mat3::from_cols_array_2d(&rotation),
         translation: translation.into(),
-        slope_scale: slope_scale.into(),
-        slope_offset: slope_offset.into(),
-        depth_numerator,
-        depth_offset,
+        scale: slope_scale.into(),
+        offset: slope_offset.into(),
+        projection: Perspective::with_depths([depth_numerator, depth_offset]),
+    });
+    |camera| OrthographicCamera {
+        rotation: [[f32; 3]; 3] = camera.parts().rotation.to_cols_array_2d(),
+        translation: [f32; 3] = camera.parts().translation.into(),
+        scale: [f32; 2] = camera.parts().scale.into(),
+        offset: [f32; 2] = camera.parts().offset.into(),
+        depth_per_ndc: f32 = camera.parts().projection.depth_per_ndc()
+    } => Camera::from_parts(CameraParts {
+        rotation: Mat3::from_cols_array_2d(&rotation),
+        translation: translation.into(),
+        scale: scale.into(),
+        offset: offset.into(),
+        projection: Orthographic::with_depth_per_ndc(depth_per_ndc),
     });
 }
 

@@ -36,14 +36,16 @@
 //! The semi-axes are enlarged by r_min times the sum, so the test never misses such a tile.
 //! `docs/rounding.md` counts the roundings.
 
+use core::marker::PhantomData;
+
 use glam::{Mat3, Vec3};
 
-use super::projected::{Field, Projected, outward};
+use super::projected::{Field, Projected, bounds_around, outward};
 use super::slopes::{TangentPlanes, unbounded};
 use super::{Project, margin};
 use crate::bound::{Ellipsoid, Ellipsoids};
 use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3};
-use crate::view::{Camera, ViewBounds};
+use crate::view::{Camera, Perspective, Projection, ViewBounds};
 
 /// Budget for c′ and M c′, in units of the sum of the coordinates of c′.
 const CENTER_ROUNDINGS: f32 = 6.0;
@@ -57,7 +59,7 @@ const AXES_DEVIATIONS: f32 = 6.0;
 /// Budget for the enlarged shortest semi-axis, the row of m and the comparison of the box test.
 const SEMI_AXIS_ROUNDINGS: u16 = 4;
 /// Lower clamp of the enlarged shortest semi-axis. Its reciprocal times a slope and a depth is finite.
-const LEAST_SEMI_AXIS: f32 = 1e-30;
+const LEAST_SEMI_AXIS: f32 = 1e-24;
 
 /// S, the symmetric matrix that stretches camera space such that `ellipsoid` becomes a unit sphere
 /// [Tokuyoshi & Harada 2017, Eq. 16].
@@ -79,7 +81,7 @@ const LEAST_SEMI_AXIS: f32 = 1e-30;
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[must_use]
-pub fn stretch_matrix(ellipsoid: &Ellipsoid, camera: &Camera) -> Mat3 {
+pub fn stretch_matrix<P: Projection>(ellipsoid: &Ellipsoid, camera: &Camera<P>) -> Mat3 {
     let axes = camera.rotation() * ellipsoid.rotation();
     axes * Mat3::from_diagonal(ellipsoid.semi_axes().recip()) * axes.transpose()
 }
@@ -119,16 +121,17 @@ pub fn stretch_rotation(stretch: Mat3) -> Mat3 {
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ProjectedEllipsoid {
+pub struct ProjectedEllipsoid<P = Perspective> {
     /// M₁₁, M₁₂, M₁₃, M₂₁, M₂₂, M₂₃, m, Mc′, and the bounds of x/z, of y/z and of z: in the layout of a batch, so
     /// that one is copied as a whole.
     fields: [f32; FIELDS],
+    projection: PhantomData<P>,
 }
 
 /// The number of fields of a projected ellipsoid.
 const FIELDS: usize = 16;
 
-impl ProjectedEllipsoid {
+impl<P> ProjectedEllipsoid<P> {
     /// M. Its columns are the images of the axes of camera space. Its third row is (0, 0, m), and M₁₂ or
     /// M₂₁ is zero.
     #[must_use]
@@ -154,7 +157,7 @@ impl Ellipsoid {
     ///
     /// For an ellipsoid too large to be finite, M is zero and takes all of space into the unit sphere.
     #[must_use]
-    pub fn project(&self, camera: &Camera) -> Option<ProjectedEllipsoid> {
+    pub fn project<P: Projection>(&self, camera: &Camera<P>) -> Option<ProjectedEllipsoid<P>> {
         if self.is_empty() {
             return None;
         }
@@ -163,14 +166,17 @@ impl Ellipsoid {
 }
 
 impl Project for Ellipsoid {
-    type Projected = ProjectedEllipsoid;
+    type Projected<P: Projection> = ProjectedEllipsoid<P>;
 
-    fn project(&self, camera: &Camera) -> Option<ProjectedEllipsoid> {
+    fn project<P: Projection>(&self, camera: &Camera<P>) -> Option<ProjectedEllipsoid<P>> {
         self.project(camera)
     }
 
     #[inline(always)]
-    fn project_lanes<N: Single>(lanes: Ellipsoids<N>, camera: &Camera) -> [N; FIELDS] {
+    fn project_lanes<N: Single, P: Projection>(
+        lanes: Ellipsoids<N>,
+        camera: &Camera<P>,
+    ) -> [N; FIELDS] {
         lanes.fields(camera)
     }
 }
@@ -178,10 +184,11 @@ impl Project for Ellipsoid {
 impl<N: Single> Ellipsoids<N> {
     /// The fields of the projected ellipsoids, none of which is empty.
     #[inline(always)]
-    pub(super) fn fields(self, camera: &Camera) -> [N; FIELDS] {
+    pub(super) fn fields<P: Projection>(self, camera: &Camera<P>) -> [N; FIELDS] {
+        let view = camera.view();
         let semi_axes = self.semi_axes;
         let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
-        let center = camera.sum_to_camera_space(self.parts);
+        let center = view.sum_to_camera_space(self.parts);
         let is_finite = semi_axes.is_finite() & center.is_finite();
         let zero = shortest.zero();
         let [low, high] = unbounded(zero);
@@ -193,12 +200,12 @@ impl<N: Single> Ellipsoids<N> {
             return everywhere;
         }
 
-        let axes = camera.rotation_in_lanes(shortest) * self.axes;
+        let axes = view.rotation_in_lanes(shortest) * self.axes;
         let [xx, xy, xz, yx, yy, yz, m] = triangular_stretch(axes, semi_axes);
         let rounding = margin(camera, center, longest, CENTER_ROUNDINGS, BOX_ROUNDINGS)
-            + camera.rounding_of_terms(self.parts);
+            + view.rounding_of_terms(self.parts);
         let tilt = longest
-            * (AXES_ROUNDINGS * UNIT_ROUNDOFF + AXES_DEVIATIONS * camera.rotation_deviation());
+            * (AXES_ROUNDINGS * UNIT_ROUNDOFF + AXES_DEVIATIONS * view.rotation_deviation());
         let enlarged = (shortest + (rounding + tilt)).round_up(SEMI_AXIS_ROUNDINGS);
         let factor = enlarged.max(zero.splat(LEAST_SEMI_AXIS)).recip();
 
@@ -211,7 +218,11 @@ impl<N: Single> Ellipsoids<N> {
             across,
             down,
             depths,
-        } = bounds(matrix, c);
+        } = if P::IS_PERSPECTIVE {
+            bounds(matrix, c)
+        } else {
+            bounds_around(center, reach(axes, semi_axes, enlarged))
+        };
         let [xx, xy, xz, yx, yy, yz, zz] = matrix;
         let [left, right] = across;
         let [bottom, top] = down;
@@ -240,6 +251,25 @@ fn bounds<N: Single>([xx, xy, xz, yx, yy, yz, m]: [N; 7], center: Vector3<N>) ->
         down: planes.slopes_of_ellipsoid(axis_y, [g_y, h_y], [center.y, center.x]),
         depths: outward([(center.z - one) / m, (center.z + one) / m]),
     }
+}
+
+/// How far ellipsoids reach from their centers along the axes of camera space, where their semi-axes, along the columns
+/// R′ = `axes`, grow in proportion until the shortest is `enlarged`.
+///
+/// Along an axis e the reach is √(eᵀCe), a sum of squares. It is nowhere less than the shortest semi-axis.
+#[inline(always)]
+fn reach<N: Single>(axes: Matrix3<N>, semi_axes: Vector3<N>, enlarged: N) -> Vector3<N> {
+    let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
+    let Vector3 { x, y, z } = semi_axes;
+    let relative = Vector3::new(x / longest, y / longest, z / longest);
+    let (largest, one) = (longest / shortest, shortest.splat(1.0));
+    let squared = relative.times(relative);
+    let along = |row: Vector3<N>| {
+        let share = squared.times(row).dot(row).sqrt() * largest;
+        share.max(one) * enlarged
+    };
+    let Matrix3 { x, y, z } = axes.transpose();
+    Vector3::new(along(x), along(y), along(z))
 }
 
 /// The elements of M·r_min, row by row without the two zeros of the last row, for the columns R′ = `axes`.
@@ -278,7 +308,7 @@ fn triangular_stretch<N: Real>(axes: Matrix3<N>, semi_axes: Vector3<N>) -> [N; 7
     [xx, xy, -shear_x, yx, yy, -shear_y, m]
 }
 
-impl Projected for ProjectedEllipsoid {
+impl<P: Projection> Projected for ProjectedEllipsoid<P> {
     type Fields<T: Field> = [T; FIELDS];
 
     /// The bounds hold nothing.
@@ -300,7 +330,10 @@ impl Projected for ProjectedEllipsoid {
 
     #[inline(always)]
     fn from_fields(fields: [f32; FIELDS]) -> Self {
-        Self { fields }
+        Self {
+            fields,
+            projection: PhantomData,
+        }
     }
 
     #[inline(always)]

@@ -1,10 +1,10 @@
 use core::fmt::Debug;
 
 use super::slopes::unbounded;
-use crate::num::{Single, UNIT_ROUNDOFF};
+use crate::num::{Single, UNIT_ROUNDOFF, Vector3};
 use crate::view::ViewBounds;
 
-/// Budget for both ends of a range of depths, in [`outward`].
+/// Budget for both ends of a range of depths, or of coordinates, in [`outward`].
 const OUTWARD_ROUNDINGS: f32 = 8.0;
 
 /// A projected shape that batches can hold: [`ProjectedEllipsoid`](crate::ProjectedEllipsoid) or
@@ -37,6 +37,16 @@ pub trait Projected: Copy + Debug {
 pub trait Field: Copy + Debug + Send + Sync {}
 
 impl<T: Copy + Debug + Send + Sync> Field for T {}
+
+/// Bounds of the coordinates of the points that are within `reach` of `center` along each axis.
+#[inline(always)]
+pub(super) fn bounds_around<N: Single>(center: Vector3<N>, reach: Vector3<N>) -> ViewBounds<N> {
+    ViewBounds {
+        across: outward([center.x - reach.x, center.x + reach.x]),
+        down: outward([center.y - reach.y, center.y + reach.y]),
+        depths: outward([center.z - reach.z, center.z + reach.z]),
+    }
+}
 
 /// The range from `near` to `far`, widened by [`OUTWARD_ROUNDINGS`]. All depths if an end is NaN.
 #[inline(always)]

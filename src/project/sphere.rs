@@ -1,15 +1,18 @@
+use core::marker::PhantomData;
+
 use glam::Vec3;
 
-use super::projected::{Field, Projected, outward};
+use super::projected::{Field, Projected, bounds_around, outward};
 use super::slopes::{TangentPlanes, unbounded};
 use super::{Project, margin};
 use crate::bound::{Sphere, Spheres};
 use crate::num::{Single, Vector3};
-use crate::view::{Camera, ViewBounds};
+use crate::view::{Camera, Perspective, Projection, ViewBounds};
 
 /// Budget for the centre, in units of the sum of its coordinates.
 const CENTER_ROUNDINGS: f32 = 9.0;
-/// Budget for the box of a tile, in units of s z: s is the secant of the corner of the view, z the depth.
+/// Budget for the box of a tile, in units of s z: s is the secant of the corner of the view, z the depth. With parallel
+/// rays, in units of the distance from the origin of camera space.
 const BOX_ROUNDINGS: f32 = 2.0;
 /// Budget for the stretch of the radius by a view that is not orthonormal, in units of its deviation δ.
 const RADIUS_DEVIATIONS: f32 = 3.0;
@@ -31,16 +34,17 @@ const LEAST_RADIUS: f32 = 1e-18;
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ProjectedSphere {
+pub struct ProjectedSphere<P = Perspective> {
     center: Vec3,
     radius_squared: f32,
     bounds: ViewBounds<f32>,
+    projection: PhantomData<P>,
 }
 
 /// The number of fields of a projected sphere.
 const FIELDS: usize = 10;
 
-impl ProjectedSphere {
+impl<P> ProjectedSphere<P> {
     /// The centre in camera space. Zero for a sphere too large to be finite.
     #[must_use]
     pub fn center(&self) -> Vec3 {
@@ -59,7 +63,7 @@ impl Sphere {
     /// Projects the sphere to the space of `camera`. `None` if the sphere is empty.
     #[inline]
     #[must_use]
-    pub fn project(&self, camera: &Camera) -> Option<ProjectedSphere> {
+    pub fn project<P: Projection>(&self, camera: &Camera<P>) -> Option<ProjectedSphere<P>> {
         if self.is_empty() {
             return None;
         }
@@ -68,14 +72,17 @@ impl Sphere {
 }
 
 impl Project for Sphere {
-    type Projected = ProjectedSphere;
+    type Projected<P: Projection> = ProjectedSphere<P>;
 
-    fn project(&self, camera: &Camera) -> Option<ProjectedSphere> {
+    fn project<P: Projection>(&self, camera: &Camera<P>) -> Option<ProjectedSphere<P>> {
         self.project(camera)
     }
 
     #[inline(always)]
-    fn project_lanes<N: Single>(lanes: Spheres<N>, camera: &Camera) -> [N; FIELDS] {
+    fn project_lanes<N: Single, P: Projection>(
+        lanes: Spheres<N>,
+        camera: &Camera<P>,
+    ) -> [N; FIELDS] {
         lanes.fields(camera)
     }
 }
@@ -83,11 +90,12 @@ impl Project for Sphere {
 impl<N: Single> Spheres<N> {
     /// The fields of the projected spheres, none of which is empty.
     #[inline(always)]
-    fn fields(self, camera: &Camera) -> [N; FIELDS] {
-        let center = camera.relative_to_anchor(self.center);
+    fn fields<P: Projection>(self, camera: &Camera<P>) -> [N; FIELDS] {
+        let view = camera.view();
+        let center = view.relative_to_anchor(self.center);
         let rounding = margin(camera, center, self.radius, CENTER_ROUNDINGS, BOX_ROUNDINGS)
-            + camera.rounding_of_anchor();
-        let stretch = self.radius * (RADIUS_DEVIATIONS * camera.rotation_deviation());
+            + view.rounding_of_anchor();
+        let stretch = self.radius * (RADIUS_DEVIATIONS * view.rotation_deviation());
         let enlarged = (self.radius + rounding + stretch).round_up(RADIUS_ROUNDINGS);
         // If the centre is not finite, the margin is not either.
         let is_finite = (enlarged * enlarged).is_finite();
@@ -98,7 +106,7 @@ impl<N: Single> Spheres<N> {
             return everywhere;
         }
         let radius = enlarged.max(zero.splat(LEAST_RADIUS));
-        let bounds = bounds(center, radius);
+        let bounds = bounds::<N, P>(center, radius);
         let ([left, right], [bottom, top]) = (bounds.across, bounds.down);
         let ([near, far], Vector3 { x, y, z }) = (bounds.depths, center);
         let squared = radius * radius;
@@ -107,9 +115,12 @@ impl<N: Single> Spheres<N> {
     }
 }
 
-/// Bounds of the slopes and depths of spheres.
+/// Bounds of the slopes and depths of spheres, or of their coordinates.
 #[inline(always)]
-fn bounds<N: Single>(center: Vector3<N>, radius: N) -> ViewBounds<N> {
+fn bounds<N: Single, P: Projection>(center: Vector3<N>, radius: N) -> ViewBounds<N> {
+    if !P::IS_PERSPECTIVE {
+        return bounds_around(center, Vector3::new(radius, radius, radius));
+    }
     let planes = TangentPlanes::new(center.z, radius);
     ViewBounds {
         across: planes.slopes_of_sphere(center.x, radius),
@@ -118,7 +129,7 @@ fn bounds<N: Single>(center: Vector3<N>, radius: N) -> ViewBounds<N> {
     }
 }
 
-impl Projected for ProjectedSphere {
+impl<P: Projection> Projected for ProjectedSphere<P> {
     /// The centre, the square of the radius, and the bounds of x/z, of y/z and of z.
     type Fields<T: Field> = [T; FIELDS];
 
@@ -158,6 +169,7 @@ impl Projected for ProjectedSphere {
             center: Vec3::new(x, y, z),
             radius_squared,
             bounds: Self::bounds_of(&fields),
+            projection: PhantomData,
         }
     }
 

@@ -1,8 +1,13 @@
 //! The exact test: a ball against the image of a tile.
 //!
+//! # Image of a tile
+//!
 //! M takes the points z(x, y, 1) of a tile to z(x a + y b + d), where a, b and d are the columns of M. The
 //! image of the tile is a frustum. Its apex is the image of the eye, and its section at each depth z is a
 //! parallelogram. Let c be the centre of the ball.
+//!
+//! The points of a tile with parallel rays go to x a + y b + z d: a frustum whose apex is infinitely far, with the same
+//! parallelogram at each depth. Its coordinates were clipped to the bounds of the shape.
 //!
 //! # Nearest point of a section
 //!
@@ -15,7 +20,7 @@
 //!
 //! The squared distance g(z) is convex and piecewise quadratic, with a piece for each side or corner of the
 //! parallelogram that can be nearest. Let R be the vector from c to the nearest point z w. Half the slope of
-//! g is s = R·w. Half the curvature is ‖w‖² less the part along the side on which the point can slide.
+//! g is s = R·w, or R·d with parallel rays, where w is d in what follows. Half the curvature is ‖w‖² less the part along the side on which the point can slide.
 //! Newton's method is exact once a step stays within a piece: nine of ten lights are decided at the depth of
 //! c, and almost all others one step later.
 //!
@@ -25,14 +30,16 @@
 //! if a plane normal to R separates the tile from the ball, that is, if R·x − R·c > ‖R‖ r for all x of the
 //! frustum. The least R·x is s z at the near or the far depth, with
 //! s = R·(x a + y b + d) − |R·a| Δx − |R·b| Δy, where x and y are the middles of the intervals and Δx and Δy
-//! their half lengths. Any R is valid, so the rounding of the search does not count. The rounding of the
+//! their half lengths. With parallel rays it is the least R·(x a + y b), plus the least R·d z. Any R is valid, so the rounding of the search does not count. The rounding of the
 //! plane, in `f64`, is 10⁻⁷ of the budget for the box test in `f32`: see `docs/rounding.md`.
 //!
 //! The search is generic over [`Double`], so that a culler decides many lights at once: all by the first step,
 //! and those that stay undecided by the whole search.
 
+use core::marker::PhantomData;
+
 use crate::num::Double;
-use crate::view::ViewBounds;
+use crate::view::{Projection, ViewBounds};
 
 /// Budget for the root of a squared radius, in units of `f64::EPSILON`.
 const RADIUS_ROUNDINGS: f64 = 4.0;
@@ -76,14 +83,15 @@ impl<N: Double> Image<N> {
 
 /// The image of a tile, a frustum, and the ball that it is tested against.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Frustum<N> {
+pub(crate) struct Frustum<N, P> {
     light: Image<N>,
-    /// The slopes x/z and y/z of the tile.
+    /// The slopes x/z and y/z of the tile, or its coordinates x and y.
     slopes: [Interval<N>; 2],
     /// The depths that both the tile and the ball have.
     depths: Interval<N>,
     /// The depth of c.
     depth: N,
+    projection: PhantomData<P>,
 }
 
 /// The result of one step of the search.
@@ -94,7 +102,7 @@ pub(crate) struct Verdict<N: Double> {
     pub is_separated: N::Mask,
 }
 
-impl<N: Double> Frustum<N> {
+impl<N: Double, P: Projection> Frustum<N, P> {
     /// The image of `tile` under the map of `light`, and the ball of `light`.
     #[inline(always)]
     pub fn new(light: Image<N>, tile: ViewBounds<N>) -> Self {
@@ -106,6 +114,7 @@ impl<N: Double> Frustum<N> {
             slopes: [Interval::new(tile.across), Interval::new(tile.down)],
             depths: Interval::new([(depth - reach).max(near), (depth + reach).min(far)]),
             depth,
+            projection: PhantomData,
         }
     }
 
@@ -133,16 +142,27 @@ impl<N: Double> Frustum<N> {
     fn separation(&self, [r0, r1, r2]: [N; 3]) -> Separation<N> {
         let Image { a, b, d, .. } = self.light;
         let ([x, y], [c0, c1, c2]) = (self.slopes, self.light.center);
-        let middle = [
-            a[0] * x.middle + b[0] * y.middle + d[0],
-            a[1] * x.middle + b[1] * y.middle + d[1],
+        let mut middle = [
+            a[0] * x.middle + b[0] * y.middle,
+            a[1] * x.middle + b[1] * y.middle,
         ];
+        if P::IS_PERSPECTIVE {
+            middle = [middle[0] + d[0], middle[1] + d[1]];
+        }
         let along_sides = [r0 * a[0] + r1 * a[1], r0 * b[0] + r1 * b[1]];
-        let slope = (r0 * middle[0] + r1 * middle[1] + r2 * d[2])
-            - (along_sides[0].abs() * x.half + along_sides[1].abs() * y.half);
+        let along_depth = r2 * d[2];
+        let halves = along_sides[0].abs() * x.half + along_sides[1].abs() * y.half;
         let z = self.depths;
+        let of_depths = |slope: N| slope * z.middle - slope.abs() * z.half;
+        let (slope, least) = if P::IS_PERSPECTIVE {
+            let slope = (r0 * middle[0] + r1 * middle[1] + along_depth) - halves;
+            (slope, of_depths(slope))
+        } else {
+            let slope = r0 * d[0] + r1 * d[1] + along_depth;
+            let of_section = (r0 * middle[0] + r1 * middle[1]) - halves;
+            (slope, of_section + of_depths(slope))
+        };
         // The signed distance along R from c to the tile, times ‖R‖.
-        let least = slope * z.middle - slope.abs() * z.half;
         let distance = least - (r0 * c0 + r1 * c1 + r2 * c2);
         let squared = r0 * r0 + r1 * r1 + r2 * r2;
         let beyond = distance * distance.abs() - squared * self.light.radius_squared;
@@ -166,7 +186,7 @@ struct Separation<N: Double> {
     verdict: Verdict<N>,
 }
 
-impl<N: Double> Frustum<N> {
+impl<N: Double, P: Projection> Frustum<N, P> {
     /// Whether the ball touches the tile. True if a number is not finite.
     #[inline(always)]
     pub fn meets_ball(&self) -> N::Mask {
@@ -206,10 +226,14 @@ impl<N: Double> Frustum<N> {
     #[inline(always)]
     fn curvature(&self, nearest: &Nearest<N>, z: N) -> N {
         let [r0, r1, _] = nearest.offset;
-        let w = [
-            (r0 + self.light.center[0]) / z,
-            (r1 + self.light.center[1]) / z,
-        ];
+        let w = if P::IS_PERSPECTIVE {
+            [
+                (r0 + self.light.center[0]) / z,
+                (r1 + self.light.center[1]) / z,
+            ]
+        } else {
+            [self.light.d[0], self.light.d[1]]
+        };
         // The square of the part of w across a side.
         let across = |[e0, e1]: [N; 2]| {
             let area = w[0] * e1 - w[1] * e0;
@@ -236,7 +260,7 @@ struct Section<N> {
 
 impl<N: Double> Section<N> {
     #[inline(always)]
-    fn new(frustum: &Frustum<N>) -> Self {
+    fn new<P>(frustum: &Frustum<N, P>) -> Self {
         let Image {
             a, b, d, center, ..
         } = frustum.light;
@@ -258,15 +282,19 @@ impl<N: Double> Section<N> {
 
     /// The point of the section at depth `z` that is nearest to c.
     #[inline(always)]
-    fn nearest(&self, frustum: &Frustum<N>, z: N) -> Nearest<N> {
+    fn nearest<P: Projection>(&self, frustum: &Frustum<N, P>, z: N) -> Nearest<N> {
         // No `array::map`, which is a call through memory if N is a vector.
         let at_depth = |[at_eye, per_depth]: [N; 2]| at_eye - per_depth * z;
         let (u_foot, v_foot) = (at_depth(self.foot[0]), at_depth(self.foot[1]));
         let [across, down] = frustum.slopes;
-        let (us, vs) = (
-            [across.min * z, across.max * z],
-            [down.min * z, down.max * z],
-        );
+        let (us, vs) = if P::IS_PERSPECTIVE {
+            (
+                [across.min * z, across.max * z],
+                [down.min * z, down.max * z],
+            )
+        } else {
+            ([across.min, across.max], [down.min, down.max])
+        };
         let u_free = u_foot + self.u_per_v * (v_foot - clamped(v_foot, vs));
         let u = clamped(u_free, us);
         let v_free = v_foot + self.v_per_u * (u_foot - u);

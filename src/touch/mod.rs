@@ -7,14 +7,14 @@ pub use box_test::BoxTest;
 pub(crate) use frustum::Frustum;
 
 use crate::project::{ProjectedEllipsoid, ProjectedHalfSpace, ProjectedSphere};
-use crate::view::{DepthInterval, TileRectangle, ViewBounds};
+use crate::view::{DepthInterval, Projection, TileRectangle, ViewBounds};
 
 /// Tests whether a projected bound touches a tile.
 ///
 /// For generic code. Each implementor also has these as inherent functions, but for the half-space, which has
 /// no exact test.
 pub trait TileTest {
-    /// Whether the bound may hold a point whose slopes lie in `rectangle` and whose depth lies in `depths`.
+    /// Whether the bound may hold a point that `rectangle` covers and whose depth lies in `depths`.
     ///
     /// Conservative: always true if it holds such a point, and true for some tiles without one.
     fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool;
@@ -31,11 +31,11 @@ pub trait TileTest {
     }
 }
 
-impl ProjectedEllipsoid {
+impl<P: Projection> ProjectedEllipsoid<P> {
     /// The bounds of the ellipsoid against the tile, then the box test: the unit sphere against the bounding
     /// box of the tile's image at the depths that both have [Tokuyoshi & Harada 2017, Sec. 5.2].
     ///
-    /// Always true if the ellipsoid holds a point whose slopes lie in `rectangle` and whose depth lies in
+    /// Always true if the ellipsoid holds a point that `rectangle` covers and whose depth lies in
     /// `depths`. True for some tiles without such a point.
     #[inline]
     #[must_use]
@@ -73,11 +73,11 @@ impl ProjectedEllipsoid {
     }
 }
 
-impl ProjectedSphere {
+impl<P: Projection> ProjectedSphere<P> {
     /// The bounds of the sphere against the tile, then the box test: the sphere against the bounding box of
     /// the tile, at the depths that both have, in camera space.
     ///
-    /// Always true if the sphere holds a point whose slopes lie in `rectangle` and whose depth lies in
+    /// Always true if the sphere holds a point that `rectangle` covers and whose depth lies in
     /// `depths`. True for some tiles without such a point.
     #[inline]
     #[must_use]
@@ -97,19 +97,28 @@ impl ProjectedSphere {
     }
 }
 
-impl ProjectedHalfSpace {
+impl<P: Projection> ProjectedHalfSpace<P> {
     /// Tests the corner of the tile that is farthest along the normal.
     ///
-    /// Always true if the half-space holds a point whose slopes lie in `rectangle` and whose depth lies in
+    /// Always true if the half-space holds a point that `rectangle` covers and whose depth lies in
     /// `depths`. False for all other tiles, but for rounding.
     #[inline]
     #[must_use]
     pub fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
-        let slopes = [rectangle.min().extend(1.0), rectangle.max().extend(1.0)];
-        let [a, b] = slopes.map(|corner| self.normal() * corner);
-        let farthest = a.max(b);
-        let at_one = farthest.x + farthest.y + farthest.z + self.rounding_at_one();
-        let max = (at_one * depths.near()).max(at_one * depths.far());
+        let (min, max) = (rectangle.min(), rectangle.max());
+        let (normal, [near, far]) = (self.normal(), [depths.near(), depths.far()]);
+        let max = if P::IS_PERSPECTIVE {
+            let [a, b] = [min, max].map(|corner| normal * corner.extend(1.0));
+            let farthest = a.max(b);
+            let at_one = farthest.x + farthest.y + farthest.z + self.rounding_at_one();
+            (at_one * near).max(at_one * far)
+        } else {
+            let [a, b] = [min.extend(near), max.extend(far)].map(|corner| normal * corner);
+            let farthest = a.max(b);
+            // No less than the length of any point of the tile.
+            let length = min.abs().max(max.abs()).element_sum() + far;
+            farthest.x + farthest.y + farthest.z + self.rounding_at_one() * length
+        };
         // Not `>=`, which would be false if an overflow makes NaN.
         !matches!(
             max.partial_cmp(&self.offset()),
@@ -131,14 +140,15 @@ fn touches_box<P: BoxTest>(shape: &P, tile: &ViewBounds<f32>) -> bool {
 #[inline(always)]
 fn touches_frustum<P: BoxTest>(shape: &P, tile: &ViewBounds<f32>) -> bool {
     let fields = shape.to_fields();
+    let tile = P::clipped(&fields, tile).widen();
     let mut image = P::fields_of(0.0_f64);
     for (double, single) in image.as_mut().iter_mut().zip(fields.as_ref()) {
         *double = f64::from(*single);
     }
-    Frustum::new(P::image(&image), tile.widen()).meets_ball()
+    Frustum::<_, P::Projection>::new(P::image(&image), tile).meets_ball()
 }
 
-impl TileTest for ProjectedEllipsoid {
+impl<P: Projection> TileTest for ProjectedEllipsoid<P> {
     #[inline]
     fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
         self.touches(rectangle, depths)
@@ -150,7 +160,7 @@ impl TileTest for ProjectedEllipsoid {
     }
 }
 
-impl TileTest for ProjectedSphere {
+impl<P: Projection> TileTest for ProjectedSphere<P> {
     #[inline]
     fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
         self.touches(rectangle, depths)
@@ -162,7 +172,7 @@ impl TileTest for ProjectedSphere {
     }
 }
 
-impl TileTest for ProjectedHalfSpace {
+impl<P: Projection> TileTest for ProjectedHalfSpace<P> {
     #[inline]
     fn touches(&self, rectangle: &TileRectangle, depths: &DepthInterval) -> bool {
         self.touches(rectangle, depths)

@@ -2,11 +2,13 @@ use super::{DepthInterval, TileRectangle};
 use crate::num::Single;
 
 /// Ranges of slopes and depths that hold a tile, or what a shape reaches. Each is \[least, greatest\].
+///
+/// For an orthographic projection, coordinates x and y take the place of slopes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewBounds<N> {
-    /// Slopes x/z.
+    /// Slopes x/z, or x.
     pub across: [N; 2],
-    /// Slopes y/z.
+    /// Slopes y/z, or y.
     pub down: [N; 2],
     /// Depths z.
     pub depths: [N; 2],
@@ -35,6 +37,16 @@ impl<N: Single> ViewBounds<N> {
         }
     }
 
+    /// The ranges that the two have in common. Reversed if there are none.
+    #[inline(always)]
+    pub fn common(&self, other: &Self) -> Self {
+        Self {
+            across: common(self.across, other.across),
+            down: common(self.down, other.down),
+            depths: common(self.depths, other.depths),
+        }
+    }
+
     /// Whether the two have a slope across, a slope down and a depth in common.
     #[inline(always)]
     pub fn meet(&self, other: &Self) -> N::Mask {
@@ -42,6 +54,12 @@ impl<N: Single> ViewBounds<N> {
             & meet(self.down, other.down)
             & meet(self.depths, other.depths)
     }
+}
+
+/// The numbers that two ranges have in common. Reversed if there are none.
+#[inline(always)]
+pub fn common<N: Single>([a_min, a_max]: [N; 2], [b_min, b_max]: [N; 2]) -> [N; 2] {
+    [a_min.max(b_min), a_max.min(b_max)]
 }
 
 /// Whether two ranges have a number in common. False if an end is NaN.

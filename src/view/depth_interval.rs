@@ -3,7 +3,8 @@ use crate::num::power;
 
 /// An interval of depths that holds the surfaces in a tile. Both ends are included.
 ///
-/// Depths are distances along the viewing direction, in the unit of the scene. The functions that take
+/// Depths are those of [`Camera::depth`](crate::Camera::depth), in the unit of the scene: distances along the
+/// viewing direction for a perspective. The functions that take
 /// depths of a depth buffer ignore sky, which is a depth that is NaN, infinite, zero or negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthInterval {
@@ -137,6 +138,32 @@ impl DepthInterval {
                 // 0/0 if both ends are zero; `max` and `min` ignore NaN.
                 (first * power(far / first, share)).max(near).min(far)
             }
+        };
+        (0..count).map(move |slice| Self {
+            near: cut(slice),
+            far: cut(slice + 1).max(cut(slice)),
+        })
+    }
+
+    /// Splits the interval into `count` slices of equal length, as suits an orthographic view.
+    ///
+    /// Neighbouring slices share an end, and all slices together are the interval. A `count` of zero gives no
+    /// slices.
+    ///
+    /// ```
+    /// use stochastic_light_culling::DepthInterval;
+    ///
+    /// let view = DepthInterval::new(20.0, 30.0)?;
+    /// let ends = view.uniform_slices(4).map(|slice| slice.far());
+    /// assert!(ends.eq([22.5, 25.0, 27.5, 30.0]));
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
+    pub fn uniform_slices(&self, count: u32) -> impl Iterator<Item = Self> + Clone + use<> {
+        let Self { near, far } = *self;
+        let cut = move |slice: u32| {
+            let share = slice as f32 / count as f32;
+            // Neither end is missed by rounding, and none of the products overflows.
+            (near * (1.0 - share) + far * share).max(near).min(far)
         };
         (0..count).map(move |slice| Self {
             near: cut(slice),

@@ -5,15 +5,22 @@ mod camera;
 mod depth_interval;
 mod grid;
 mod interleave;
+mod orthographic;
+mod perspective;
+mod projection;
 mod rectangle;
+mod rigid;
 
-pub(crate) use bounds::ViewBounds;
 #[cfg(feature = "cull")]
 pub(crate) use bounds::meet;
-pub use camera::Camera;
+pub(crate) use bounds::{ViewBounds, common};
 #[cfg(feature = "serde")]
 pub(crate) use camera::CameraParts;
+pub use camera::{AnyCamera, Camera};
 pub use depth_interval::DepthInterval;
 pub use grid::{PixelRectangle, TileGrid};
 pub use interleave::Interleave;
+pub use orthographic::Orthographic;
+pub use perspective::Perspective;
+pub use projection::Projection;
 pub use rectangle::TileRectangle;

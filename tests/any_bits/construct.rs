@@ -4,12 +4,13 @@ use std::hint::black_box;
 
 use fastrand::Rng;
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, Dielectric, Direction, Ellipsoid, Ggx,
-    GgxLobe, Incidence, Interleave, LambertLobe, LtcLobe, NoFresnel, PhongLobe, PixelRectangle,
-    Roulette, Schlick, Sphere, SphericalGaussian, SpotLobe, TileGrid, Xi,
+    AnisotropicGgx, AnisotropicGgxLobe, AnyCamera, Camera, Conductor, Dielectric, Direction,
+    Ellipsoid, Ggx, GgxLobe, Incidence, Interleave, LambertLobe, LtcLobe, NoFresnel, Orthographic,
+    Perspective, PhongLobe, PixelRectangle, Roulette, Schlick, Sphere, SphericalGaussian, SpotLobe,
+    TileGrid, Xi,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
-use support::adversary::{Light, Reach, Tile};
+use support::adversary::{Bound, Drawn, Light, Reach, Tile};
 use support::reference::{self, Brdf, Masking, Vector};
 
 use crate::bits::Bits;
@@ -20,7 +21,7 @@ use crate::probe::{self, Probed};
 pub fn everything(bits: &mut Bits) {
     let cameras = cameras(bits);
     for camera in &cameras {
-        probe::camera(camera);
+        probe::any_camera(camera);
     }
     match bits.byte() % 7 {
         0 => glossy(bits, &cameras),
@@ -40,7 +41,7 @@ pub fn directions(bits: &mut Bits) -> Option<[Direction; 2]> {
     Some(directions)
 }
 
-fn glossy(bits: &mut Bits, cameras: &[Camera]) {
+fn glossy(bits: &mut Bits, cameras: &[AnyCamera]) {
     let (Ok(ggx), Some([normal, incoming])) = (Ggx::new(bits.number()), directions(bits)) else {
         return;
     };
@@ -86,7 +87,7 @@ fn glossy(bits: &mut Bits, cameras: &[Camera]) {
     }
 }
 
-fn shapes(bits: &mut Bits, cameras: &[Camera]) {
+fn shapes(bits: &mut Bits, cameras: &[AnyCamera]) {
     if let Ok(sphere) = Sphere::new(bits.vector(), bits.number()) {
         sphere.probe(cameras);
     }
@@ -132,7 +133,7 @@ fn sizes(bits: &mut Bits) {
 }
 
 /// A camera that always is, and those that the bits make.
-fn cameras(bits: &mut Bits) -> Vec<Camera> {
+fn cameras(bits: &mut Bits) -> Vec<AnyCamera> {
     let usual = Camera::look_at(Vec3::ZERO, Vec3::X, Vec3::Y, 1.0, 1.5, 0.1..100.0);
     let looking = Camera::look_at(
         bits.vector(),
@@ -150,17 +151,43 @@ fn cameras(bits: &mut Bits) -> Vec<Camera> {
         }
         _ => bits.matrix4(),
     };
+    let parallel = Camera::orthographic_look_at(
+        bits.vector(),
+        bits.vector(),
+        bits.vector(),
+        bits.number(),
+        bits.number(),
+        bits.number()..bits.number(),
+    );
+    let is_perspective = bits.byte() < 128;
+    let [w_of_z, w_of_w] = if is_perspective {
+        [1.0, 0.0]
+    } else {
+        [0.0, 1.0]
+    };
     let mut projection = Mat4::from_cols(
         Vec4::new(bits.number(), 0.0, 0.0, 0.0),
         Vec4::new(0.0, bits.number(), 0.0, 0.0),
-        bits.vector().extend(1.0),
-        Vec4::new(0.0, 0.0, bits.number(), 0.0),
+        if is_perspective {
+            bits.vector()
+        } else {
+            bits.number() * Vec3::Z
+        }
+        .extend(w_of_z),
+        if is_perspective {
+            bits.number() * Vec3::Z
+        } else {
+            bits.vector()
+        }
+        .extend(w_of_w),
     );
     if bits.byte() < 32 {
         projection = bits.matrix4();
     }
-    let given = Camera::new(view, projection);
-    [usual, looking, given].into_iter().flatten().collect()
+    let given = AnyCamera::new(view, projection).ok();
+    let looking = [usual, looking].into_iter().flatten().map(AnyCamera::from);
+    let parallel = parallel.into_iter().map(AnyCamera::from);
+    looking.chain(parallel).chain(given).collect()
 }
 
 /// A light with its parameters from bits, where they lie in the domain, against a tile that it
@@ -262,9 +289,14 @@ pub fn light_in_domain(bits: &mut Bits) {
     let bound = light.bound();
     let mut rng = Rng::with_seed(bits.seed());
     for _ in 0..8 {
-        if let Some(tile) = Tile::draw(&mut rng, &light) {
-            let lost = bound.that_lose_exactly(&tile);
-            assert!(lost.is_empty(), "{lost:?} of {light:?} in {tile:?}");
-        }
+        touched::<Perspective>(&mut rng, &light, &bound);
+        touched::<Orthographic>(&mut rng, &light, &bound);
+    }
+}
+
+fn touched<P: Drawn>(rng: &mut Rng, light: &Light, bound: &Bound) {
+    if let Some(tile) = Tile::<P>::draw(rng, light) {
+        let lost = bound.that_lose_exactly(&tile);
+        assert!(lost.is_empty(), "{lost:?} of {light:?} in {tile:?}");
     }
 }

@@ -4,18 +4,23 @@
 use std::fmt::Debug;
 
 use stochastic_light_culling::{
-    BatchBuilder, Bounded, BoxTest, Camera, Culler, DepthInterval, Direction, Ellipsoid, Ggx,
-    GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, Lobe, NoFresnel, Project,
-    RadianceEstimator, Receiver, ReceiverBlock, Roulette, Seed, ShadedPoint, ShadingBatch, Sphere,
-    TileDepths, TileGrid, TileRectangle, Vpl, Xi, glam::Mat3,
+    AnyCamera, BatchBuilder, Bounded, BoxTest, Camera, Culler, DepthInterval, Direction, Ellipsoid,
+    Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, Lobe, NoFresnel, Project,
+    ProjectedBound, Projection, RadianceEstimator, Receiver, ReceiverBlock, Roulette, Seed,
+    ShadedPoint, ShadingBatch, Sphere, TileDepths, TileGrid, TileRectangle, Vpl, Xi, glam::Mat3,
 };
+use support::with_camera;
 
 use crate::bits::Bits;
 use crate::probe::{PLACES, SCALES};
 
-pub fn everything(bits: &mut Bits, cameras: &[Camera]) {
+pub fn everything(bits: &mut Bits, cameras: &[AnyCamera]) {
     let camera = &cameras[usize::from(bits.byte()) % cameras.len()];
     refused_grids(bits);
+    with_camera!(camera, camera => in_view(bits, camera));
+}
+
+fn in_view<P: Projection>(bits: &mut Bits, camera: &Camera<P>) {
     let Some(grid) = Grid::new(bits, camera) else {
         return;
     };
@@ -60,15 +65,15 @@ fn refused_grids(bits: &mut Bits) {
 }
 
 /// Tiles before a camera.
-struct Grid<'a> {
-    camera: &'a Camera,
+struct Grid<'a, P> {
+    camera: &'a Camera<P>,
     tiles: TileDepths,
     /// Tile by tile what was put into `tiles`.
     seen: Vec<(TileRectangle, Vec<Option<DepthInterval>>)>,
 }
 
-impl<'a> Grid<'a> {
-    fn new(bits: &mut Bits, camera: &'a Camera) -> Option<Self> {
+impl<'a, P: Projection> Grid<'a, P> {
+    fn new(bits: &mut Bits, camera: &'a Camera<P>) -> Option<Self> {
         let image = [24, 8].map(|most| 1 + u32::from(bits.byte()) % most);
         let grid = TileGrid::new(image, 1 + u32::from(bits.byte()) % 3).ok()?;
         let rectangle = |tile| camera.tile_rectangle(image, grid.pixels(tile));
@@ -105,7 +110,8 @@ impl<'a> Grid<'a> {
     /// Copies of a bound from nowhere to everywhere.
     fn lists_bounds<B>(&self, bits: &mut Bits, bound: B)
     where
-        B: Project<Projected: BoxTest + PartialEq + Debug> + 'static,
+        B: Project + 'static,
+        B::Projected<P>: BoxTest + PartialEq + Debug,
     {
         let places = PLACES.into_iter();
         let places = places.flat_map(|place| SCALES.map(|scale| (place, scale)));
@@ -121,7 +127,8 @@ impl<'a> Grid<'a> {
     /// Lights from the dimmest to the brightest.
     fn lists_lights<L>(&self, bits: &mut Bits, lobe: L)
     where
-        L: Bounded<Shape: Project<Projected: BoxTest + PartialEq + Debug>> + Copy + 'static,
+        L: Bounded<Shape: Project> + Copy + 'static,
+        ProjectedBound<L, P>: BoxTest + PartialEq + Debug,
     {
         let (roulette, xi) = (roulette(bits), Xi::new(bits.number()));
         let xi = xi.unwrap_or(Seed(3).frame(2).xi(1));
@@ -235,6 +242,10 @@ fn roulette(bits: &mut Bits) -> Roulette {
     Roulette::new(bits.number()).unwrap_or(Roulette::new(1.0).expect("positive"))
 }
 
-fn builder(bits: &mut Bits, roulette: &Roulette, camera: &Camera) -> BatchBuilder {
+fn builder<P: Projection>(
+    bits: &mut Bits,
+    roulette: &Roulette,
+    camera: &Camera<P>,
+) -> BatchBuilder<P> {
     BatchBuilder::new(roulette, camera).with_lanes(bits.byte().into())
 }

@@ -1,9 +1,9 @@
 //! Every field of every constructor in turn, with each special number.
 
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, Camera, Conductor, ConstantLobe, DepthInterval, Dielectric,
-    Direction, Ellipsoid, Error, Ggx, GgxLobe, Incidence, LambertLobe, NoFresnel, Roulette,
-    Schlick, Sphere, TileRectangle, Vpl, Xi,
+    AnisotropicGgx, AnisotropicGgxLobe, AnyCamera, Camera, Conductor, ConstantLobe, DepthInterval,
+    Dielectric, Direction, Ellipsoid, Error, Ggx, GgxLobe, Incidence, LambertLobe, NoFresnel,
+    Roulette, Schlick, Sphere, TileRectangle, Vpl, Xi,
     glam::{Mat3, Mat4, Vec2, Vec3},
 };
 
@@ -30,15 +30,21 @@ fn each_field<T, const N: usize>(
     }
 }
 
-fn usual() -> Camera {
-    Camera::look_at(Vec3::ZERO, Vec3::X, Vec3::Y, 1.0, 1.5, 0.1..100.0).expect("valid")
+fn usual() -> [AnyCamera; 2] {
+    let (eye, up) = (Vec3::ZERO, Vec3::Y);
+    let perspective = Camera::look_at(eye, Vec3::X, up, 1.0, 1.5, 0.1..100.0);
+    let parallel = Camera::orthographic_look_at(eye, Vec3::X, up, 9.0, 1.5, -9.0..9.0);
+    [
+        perspective.expect("valid").into(),
+        parallel.expect("valid").into(),
+    ]
 }
 
 fn ignore<T>(_: &T) {}
 
 #[test]
 fn of_lobes() {
-    let cameras = [usual()];
+    let cameras = usual();
     let incoming = Direction::new(Vec3::new(0.3, 0.2, 0.9)).expect("not zero");
     let lobe = |ggx| {
         GgxLobe::new(
@@ -134,14 +140,14 @@ fn of_ranges_and_lights() {
         |light| {
             light
                 .bound(&roulette, Xi::new(1.0).expect("valid"))
-                .probe(&[usual()]);
+                .probe(&usual());
         },
     );
 }
 
 #[test]
 fn of_shapes_and_tiles() {
-    let cameras = [usual()];
+    let cameras = usual();
     each_field(
         [1.0, 2.0, 3.0, 4.0],
         |[x, y, z, radius]| Sphere::new(Vec3::new(x, y, z), radius),
@@ -190,7 +196,25 @@ fn of_cameras() {
     );
     each_field(
         projection.to_cols_array(),
-        |f| Camera::new(view, Mat4::from_cols_array(&f)),
+        |f| AnyCamera::new(view, Mat4::from_cols_array(&f)),
+        probe::any_camera,
+    );
+    each_field(
+        [
+            1.0, 2.0, 3.0, 4.0, 5.0, 7.0, 0.0, 1.0, 0.0, 8.0, 1.5, -5.0, 100.0,
+        ],
+        |f| {
+            let [eye, target, up] = [0, 3, 6].map(|i| vector(&f[i..]));
+            Camera::orthographic_look_at(eye, target, up, f[9], f[10], f[11]..f[12])
+        },
         probe::camera,
+    );
+    let projection = Mat4::from_cols_array(&[
+        0.1, 0.0, 0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.0, -0.01, 0.0, 0.3, -0.4, 0.2, 1.0,
+    ]);
+    each_field(
+        projection.to_cols_array(),
+        |f| AnyCamera::new(view, Mat4::from_cols_array(&f)),
+        probe::any_camera,
     );
 }

@@ -3,18 +3,19 @@
 use std::hint::black_box;
 
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicSphericalGaussian, Bounded, Camera, ClusterSums, ConstantLobe,
+    AnisotropicGgx, AnisotropicSphericalGaussian, AnyCamera, Bounded, ClusterSums, ConstantLobe,
     DepthInterval, DistanceWindow, FilteredSampling, Fresnel, FresnelMajorant, Ggx, GgxLobe,
     Incidence, LambertLobe, Lobe, MipPyramid, NoFresnel, Paper, PhongLobe, Proxy,
     RadianceEstimator, Roulette, Seed, ShadedPoint, ShadingBatch, SphericalGaussian, SpotLobe,
     Tight, TileRectangle, Triaxial, Vpl, Vsgl, Xi, glam::Vec3,
 };
+use support::with_camera;
 
 use crate::bits::Bits;
 use crate::construct::directions;
-use crate::probe::{self};
+use crate::probe;
 
-pub fn others(bits: &mut Bits, cameras: &[Camera]) {
+pub fn others(bits: &mut Bits, cameras: &[AnyCamera]) {
     if let Some([normal, _]) = directions(bits) {
         if let Ok(lobe) = LambertLobe::new(bits.number(), normal) {
             probe::lambert_lobe(&lobe, cameras);
@@ -83,7 +84,7 @@ pub fn others(bits: &mut Bits, cameras: &[Camera]) {
     black_box(DepthInterval::half_z(depths));
 }
 
-fn gaussians(bits: &mut Bits, cameras: &[Camera]) {
+fn gaussians(bits: &mut Bits, cameras: &[AnyCamera]) {
     let Some([axis, other]) = directions(bits) else {
         return;
     };
@@ -152,7 +153,7 @@ fn gaussians(bits: &mut Bits, cameras: &[Camera]) {
 }
 
 /// A cluster, bounded and evaluated.
-fn cluster(bits: &mut Bits, light: &Vsgl, cameras: &[Camera]) {
+fn cluster(bits: &mut Bits, light: &Vsgl, cameras: &[AnyCamera]) {
     let (Ok(roulette), Ok(xi)) = (Roulette::new(bits.number()), Xi::new(bits.number())) else {
         return;
     };
@@ -192,7 +193,7 @@ fn map(bits: &mut Bits, light: ClusterSums) {
 
 /// A Fresnel factor that keeps no promise, and places that are none: what they come to
 /// means nothing, but nothing panics.
-pub fn foreign(bits: &mut Bits, cameras: &[Camera]) {
+pub fn foreign(bits: &mut Bits, cameras: &[AnyCamera]) {
     #[derive(Clone, Copy, Debug)]
     struct Wild([f32; 5]);
     impl Fresnel for Wild {
@@ -228,11 +229,13 @@ pub fn foreign(bits: &mut Bits, cameras: &[Camera]) {
     ];
     for bound in bounds.map(|bound| bound.placed(place, scale)) {
         black_box(Proxy::Icosphere.vertices(&bound).last());
-        for stretch in cameras.iter().filter_map(|camera| bound.project(camera)) {
+        for camera in cameras {
             let tile = TileRectangle::new(bits.pair(), bits.pair());
             let depths = DepthInterval::new(bits.number(), bits.number());
             if let (Ok(tile), Ok(depths)) = (tile, depths) {
-                black_box(stretch.touches_exactly(&tile, &depths));
+                black_box(with_camera!(camera, camera => {
+                    bound.project(camera).map(|test| test.touches_exactly(&tile, &depths))
+                }));
             }
         }
     }

@@ -3,13 +3,14 @@
 use std::hint::black_box;
 
 use stochastic_light_culling::{
-    AnisotropicGgxLobe, Bounded, Camera, Cap, DepthInterval, Direction, Ellipsoid, Fresnel,
-    GgxLobe, GpuEllipsoid, GpuSphere, HalfSpace, LambertLobe, Lobe, MaskingShadowing,
-    PixelRectangle, Proxy, Roulette, Shape, Sphere, Spheroid, Tight, TileRectangle, TileTest,
-    Triaxial, Vpl, Xi,
+    AnisotropicGgxLobe, AnyCamera, Bounded, Camera, Cap, DepthInterval, Direction, Ellipsoid,
+    Fresnel, GgxLobe, GpuEllipsoid, GpuSphere, HalfSpace, LambertLobe, Lobe, MaskingShadowing,
+    PixelRectangle, Projection, Proxy, Roulette, Shape, Sphere, Spheroid, Tight, TileRectangle,
+    TileTest, Triaxial, Vpl, Xi,
     glam::{Mat3, Vec2, Vec3},
     stretch_matrix, stretch_rotation,
 };
+use support::with_camera;
 
 const IMAGE: [u32; 2] = [640, 480];
 
@@ -39,32 +40,32 @@ fn matrix(m: Mat3) {
 
 /// What a lobe's bound is, and how to look into it.
 pub trait Probed: Shape + std::fmt::Debug {
-    fn probe(&self, cameras: &[Camera]);
+    fn probe(&self, cameras: &[AnyCamera]);
 }
 
 impl Probed for Sphere {
-    fn probe(&self, cameras: &[Camera]) {
+    fn probe(&self, cameras: &[AnyCamera]) {
         vector(self.center());
         number(self.radius());
         for camera in cameras {
-            if let Some(test) = self.project(camera) {
+            with_camera!(camera, camera => if let Some(test) = self.project(camera) {
                 vector(test.center());
                 number(test.radius_squared());
                 black_box(bytemuck::bytes_of(&GpuSphere::from(&test)));
                 touching(&test, camera);
-            }
+            });
         }
     }
 }
 
 impl Probed for Ellipsoid {
-    fn probe(&self, cameras: &[Camera]) {
+    fn probe(&self, cameras: &[AnyCamera]) {
         ellipsoid(self, cameras);
     }
 }
 
 impl Probed for Spheroid {
-    fn probe(&self, cameras: &[Camera]) {
+    fn probe(&self, cameras: &[AnyCamera]) {
         vector(self.focus());
         direction(self.axis());
         number(self.radius());
@@ -75,7 +76,7 @@ impl Probed for Spheroid {
     }
 }
 
-pub fn ellipsoid(ellipsoid: &Ellipsoid, cameras: &[Camera]) {
+pub fn ellipsoid(ellipsoid: &Ellipsoid, cameras: &[AnyCamera]) {
     vector(ellipsoid.center());
     matrix(ellipsoid.rotation());
     vector(ellipsoid.semi_axes());
@@ -85,25 +86,27 @@ pub fn ellipsoid(ellipsoid: &Ellipsoid, cameras: &[Camera]) {
             .for_each(|vertex| assert!(vertex.is_finite(), "{vertex}"));
     }
     for camera in cameras {
-        if let Some(test) = ellipsoid.project(camera) {
-            matrix(test.matrix());
-            vector(test.center());
-            black_box(bytemuck::bytes_of(&GpuEllipsoid::new(&test, 7)));
-            touching(&test, camera);
-        }
-        black_box(stretch_rotation(stretch_matrix(ellipsoid, camera)));
+        with_camera!(camera, camera => {
+            if let Some(test) = ellipsoid.project(camera) {
+                matrix(test.matrix());
+                vector(test.center());
+                black_box(bytemuck::bytes_of(&GpuEllipsoid::new(&test, 7)));
+                touching(&test, camera);
+            }
+            black_box(stretch_rotation(stretch_matrix(ellipsoid, camera)));
+        });
     }
 }
 
 /// Tile tests do not panic, whatever the tile.
-fn touching(test: &impl TileTest, camera: &Camera) {
+fn touching<P: Projection>(test: &impl TileTest, camera: &Camera<P>) {
     let all = PixelRectangle {
         min: [0; 2],
         max: IMAGE,
     };
     let rectangles = [
         Some(camera.tile_rectangle(IMAGE, all)),
-        TileRectangle::new(Vec2::splat(-1e6), Vec2::splat(1e6)).ok(),
+        TileRectangle::new(Vec2::splat(-1e12), Vec2::splat(1e12)).ok(),
         TileRectangle::new(Vec2::splat(1e-45), Vec2::splat(1e-45)).ok(),
     ];
     let depths = [(0.0, 0.0), (0.0, f32::MAX), (1e-45, 1e-45), (1.0, 2.0)];
@@ -144,7 +147,7 @@ where
     assert_eq!(&read, value, "{text}");
 }
 
-pub fn ggx_lobe<F, G>(lobe: &GgxLobe<F, G>, cameras: &[Camera])
+pub fn ggx_lobe<F, G>(lobe: &GgxLobe<F, G>, cameras: &[AnyCamera])
 where
     F: Fresnel + std::fmt::Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned,
     G: MaskingShadowing + std::fmt::Debug + PartialEq,
@@ -165,13 +168,13 @@ where
     everywhere(&lobe.unit_bound_by(Tight), cameras);
 }
 
-pub fn lambert_lobe(lobe: &LambertLobe, cameras: &[Camera]) {
+pub fn lambert_lobe(lobe: &LambertLobe, cameras: &[AnyCamera]) {
     saved(lobe);
     light(*lobe, cameras);
     everywhere(&lobe.unit_bound_by(Tight), cameras);
 }
 
-fn everywhere(bound: &impl Probed, cameras: &[Camera]) {
+fn everywhere(bound: &impl Probed, cameras: &[AnyCamera]) {
     bound.probe(cameras);
     for position in PLACES {
         for scale in SCALES {
@@ -180,7 +183,7 @@ fn everywhere(bound: &impl Probed, cameras: &[Camera]) {
     }
 }
 
-pub fn grained_lobe<F>(lobe: &AnisotropicGgxLobe<F>, cameras: &[Camera])
+pub fn grained_lobe<F>(lobe: &AnisotropicGgxLobe<F>, cameras: &[AnyCamera])
 where
     F: Fresnel + std::fmt::Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned,
 {
@@ -197,7 +200,7 @@ where
 }
 
 /// A lobe's light, from the dimmest to the brightest.
-pub fn light<L: Bounded<Shape: Probed> + std::fmt::Debug + Copy>(lobe: L, cameras: &[Camera]) {
+pub fn light<L: Bounded<Shape: Probed> + std::fmt::Debug + Copy>(lobe: L, cameras: &[AnyCamera]) {
     values(&lobe, &[]);
     everywhere(&lobe.unit_bound(), cameras);
     for position in PLACES {
@@ -241,8 +244,20 @@ pub fn roulette(roulette: &Roulette, xi: Xi) {
     }
 }
 
-pub fn camera(camera: &Camera) {
+pub fn any_camera(camera: &AnyCamera) {
+    with_camera!(camera, camera => self::camera(camera));
+}
+
+pub fn camera<P: Projection>(camera: &Camera<P>)
+where
+    Camera<P>: serde::Serialize + serde::de::DeserializeOwned,
+{
     saved(camera);
+    for pixels in [[0.5, -0.25], [f32::MAX, 1e-45]] {
+        if let Ok(camera) = camera.jittered(IMAGE, pixels) {
+            vector(camera.point_in_pixel(IMAGE, [0, 479], 1.0));
+        }
+    }
     for position in PLACES {
         touching(
             &HalfSpace::new(position, Direction::Z)

@@ -2,14 +2,19 @@
 
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    Camera, DepthInterval, Ellipsoid, PixelRectangle, ProjectedEllipsoid, ProjectedSphere, Sphere,
-    TileDepths, TileRectangle,
+    Camera, DepthInterval, Ellipsoid, Orthographic, PixelRectangle, Projection, Sphere, TileDepths,
+    TileRectangle,
     glam::{Mat3, Vec3},
 };
 use support::generators::{self};
 
 pub fn camera() -> Camera {
     Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.2, 1.5, 0.1..100.0).unwrap()
+}
+
+/// The same, but for parallel rays. Depths are distances too.
+pub fn parallel_camera() -> Camera<Orthographic> {
+    Camera::orthographic_look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 30.0, 1.5, 50.0..75.0).unwrap()
 }
 
 /// How many tiles, and what each of them sees.
@@ -20,12 +25,12 @@ pub struct Grid {
 }
 
 impl Grid {
-    pub fn rectangle(&self, [x, y]: [u32; 2]) -> TileRectangle {
+    pub fn rectangle<P: Projection>(&self, camera: &Camera<P>, [x, y]: [u32; 2]) -> TileRectangle {
         let pixels = PixelRectangle {
             min: [x, y],
             max: [x + 1, y + 1],
         };
-        camera().tile_rectangle(self.size, pixels)
+        camera.tile_rectangle(self.size, pixels)
     }
 
     pub fn tiles(&self) -> impl Iterator<Item = ([u32; 2], &Vec<Option<DepthInterval>>)> {
@@ -34,10 +39,10 @@ impl Grid {
         positions.zip(&self.depths)
     }
 
-    pub fn tile_depths(&self) -> TileDepths {
+    pub fn tile_depths<P: Projection>(&self, camera: &Camera<P>) -> TileDepths {
         let intervals = self.depths[0].len() as u32;
-        let mut tiles =
-            TileDepths::from_rectangles(self.size, intervals, |tile| self.rectangle(tile)).unwrap();
+        let rectangle = |tile| self.rectangle(camera, tile);
+        let mut tiles = TileDepths::from_rectangles(self.size, intervals, rectangle).unwrap();
         for (tile, depths) in self.tiles() {
             tiles.set(tile, depths.iter().copied());
         }
@@ -61,7 +66,7 @@ pub fn grid() -> impl Strategy<Value = Grid> {
 }
 
 /// In camera space, at all distances and sizes, and now and then everywhere.
-pub fn stretch() -> impl Strategy<Value = ProjectedEllipsoid> {
+pub fn ellipsoid() -> impl Strategy<Value = Ellipsoid> {
     let center = (-30.0..30.0_f32, -20.0..20.0_f32, -50.0..5.0_f32);
     let ellipsoid = (center, generators::ellipsoid(), -3.0..0.5_f32);
     let anywhere = ellipsoid.prop_map(|((x, y, z), shape, size)| {
@@ -73,14 +78,11 @@ pub fn stretch() -> impl Strategy<Value = ProjectedEllipsoid> {
     let distant =
         Just(Ellipsoid::new(Vec3::splat(1e30), Mat3::IDENTITY, Vec3::splat(1.0)).unwrap());
     prop_oneof![30 => anywhere, 1 => huge, 1 => distant]
-        .prop_map(|ellipsoid| ellipsoid.project(&camera()).unwrap())
 }
 
-pub fn sphere() -> impl Strategy<Value = ProjectedSphere> {
+pub fn sphere() -> impl Strategy<Value = Sphere> {
     let center = (-30.0..30.0_f32, -20.0..20.0_f32, -50.0..5.0_f32);
     let radius = prop_oneof![30 => generators::log_uniform(1e-2, 20.0), 1 => Just(1e38)];
-    (center, radius).prop_map(|((x, y, z), radius)| {
-        let sphere = Sphere::new(Vec3::new(x, y, z), radius as f32).unwrap();
-        sphere.project(&camera()).unwrap()
-    })
+    (center, radius)
+        .prop_map(|((x, y, z), radius)| Sphere::new(Vec3::new(x, y, z), radius as f32).unwrap())
 }

@@ -8,13 +8,13 @@ use stochastic_light_culling::{
     TileRectangle, glam::Vec3,
 };
 
-use super::grid::{camera, grid, stretch};
+use super::grid::{camera, ellipsoid, grid};
 
 #[test]
 fn memory_is_reused_without_a_trace_of_earlier_frames() {
     let mut runner = TestRunner::deterministic();
     let mut draw = |lights: std::ops::Range<usize>| {
-        let frame = (grid(), prop::collection::vec(stretch(), lights));
+        let frame = (grid(), prop::collection::vec(ellipsoid(), lights));
         frame.new_tree(&mut runner).unwrap().current()
     };
     let mut culler = Culler::new();
@@ -22,8 +22,9 @@ fn memory_is_reused_without_a_trace_of_earlier_frames() {
     let mut lists = LightLists::new();
     for lights in [300..301, 20..21, 0..1, 500..501, 3..4] {
         let (grid, shapes) = draw(lights);
-        let tiles = grid.tile_depths();
+        let tiles = grid.tile_depths(&camera());
         batch.clear();
+        let shapes = shapes.iter().map(|shape| shape.project(&camera()).unwrap());
         batch.extend((0..).zip(shapes));
         culler.cull(&batch, &tiles, &mut lists).unwrap();
         let mut fresh = LightLists::new();

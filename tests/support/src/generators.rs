@@ -11,7 +11,7 @@ use stochastic_light_culling::{
 
 use crate::reference::{
     Brdf, Fresnel, Masking, Surface, Vector,
-    camera::{View, off_centre},
+    camera::{View, off_centre, orthographic},
 };
 
 /// So many cases, or as many as the environment variable PROPTEST_CASES says.
@@ -270,17 +270,14 @@ pub fn position() -> impl Strategy<Value = Vec3> {
     ]
 }
 
+/// Views of either projection.
+pub fn any_view() -> impl Strategy<Value = View> {
+    prop_oneof![view(), orthographic_view()]
+}
+
 /// Views of either handedness, anywhere, with fields of view to 170°, symmetric and off-centre, and
 /// clip depths that rise, fall, and reach to infinity.
 pub fn view() -> impl Strategy<Value = View> {
-    let slopes = || {
-        let slope = || log_uniform(0.05, 11.4).prop_map(|x| x as f32);
-        prop_oneof![
-            2 => slope().prop_map(|s| [-s, s]),
-            1 => (slope(), slope()).prop_map(|(a, b)| [-a, b]),
-            1 => (slope(), 0.1..2.0_f32).prop_map(|(a, b)| [a, a + b]),
-        ]
-    };
     let clip_depth = prop_oneof![
         Just([1.001, -0.1001]),
         Just([0.0, 0.1]),
@@ -288,35 +285,81 @@ pub fn view() -> impl Strategy<Value = View> {
         Just([-0.001, 0.1001]),
         Just([1.002, -0.2002]),
     ];
+    (any::<bool>(), edges(), edges(), clip_depth).prop_flat_map(
+        |(left_handed, horizontal, vertical, clip_depth)| {
+            let projection = off_centre(left_handed, horizontal, vertical, clip_depth);
+            placed(left_handed, projection)
+        },
+    )
+}
+
+/// Orthographic views of either handedness, anywhere and of any size, symmetric and off-centre, with near planes
+/// before and behind the camera, and depths to \[0, 1\] and \[−1, 1\] that rise and fall.
+pub fn orthographic_view() -> impl Strategy<Value = View> {
+    let size = log_uniform(1e-3, 1e3).prop_map(|x| x as f32);
+    let edges = (size.clone(), edges(), edges()).prop_map(|(size, horizontal, vertical)| {
+        [horizontal, vertical].map(|edges| edges.map(|edge| edge * size))
+    });
+    let near = prop_oneof![1 => Just(0.0_f32), 2 => -1e3..1e3_f32];
+    // NDC z at the near and the far plane.
+    let ends = prop_oneof![
+        Just([0.0, 1.0]),
+        Just([1.0, 0.0]),
+        Just([-1.0, 1.0]),
+        Just([1.0, -1.0_f32])
+    ];
+    (any::<bool>(), edges, (near, size, ends)).prop_flat_map(
+        |(faces_forward, [horizontal, vertical], (near, length, [at_near, at_far]))| {
+            let per_depth = (at_far - at_near) / length;
+            // Depths rise with NDC z.
+            let left_handed = faces_forward == (per_depth > 0.0);
+            let forward = if per_depth > 0.0 { 1.0 } else { -1.0 };
+            let depths = [per_depth.abs(), at_near - forward * near * per_depth.abs()];
+            placed(
+                left_handed,
+                orthographic(left_handed, horizontal, vertical, depths),
+            )
+        },
+    )
+}
+
+/// The edges of a view at depth 1, in one direction.
+fn edges() -> impl Strategy<Value = [f32; 2]> {
+    let slope = || log_uniform(0.05, 11.4).prop_map(|x| x as f32);
+    prop_oneof![
+        2 => slope().prop_map(|s| [-s, s]),
+        1 => (slope(), slope()).prop_map(|(a, b)| [-a, b]),
+        1 => (slope(), 0.1..2.0_f32).prop_map(|(a, b)| [a, a + b]),
+    ]
+}
+
+/// Views with this projection, anywhere.
+fn placed(left_handed: bool, projection: Mat4) -> impl Strategy<Value = View> {
     let place = (
         unit_vector(),
         0.0..TAU,
         unit_vector(),
         log_uniform(1e-3, 1e3),
     );
-    let turn = (any::<bool>(), any::<bool>());
-    (turn, slopes(), slopes(), clip_depth, place).prop_map(
-        |((left_handed, mirrored), horizontal, vertical, clip_depth, place)| {
-            let (forward, roll, way, distance) = place;
-            let side = forward.orthogonal();
-            let right = side.turned(forward.cross(side), roll);
-            let up = forward.cross(right) * if mirrored { -1.0 } else { 1.0 };
-            let z = forward * if left_handed { 1.0 } else { -1.0 };
-            let rotation = Mat4::from_cols(
-                right.to_f32().extend(0.0),
-                up.to_f32().extend(0.0),
-                z.to_f32().extend(0.0),
-                Vec4::W,
-            );
-            let mut view = rotation.transpose();
-            view.w_axis = (way * distance).to_f32().extend(1.0);
-            View {
-                from_world: view,
-                projection: off_centre(left_handed, horizontal, vertical, clip_depth),
-                left_handed,
-            }
-        },
-    )
+    (any::<bool>(), place).prop_map(move |(mirrored, (forward, roll, way, distance))| {
+        let side = forward.orthogonal();
+        let right = side.turned(forward.cross(side), roll);
+        let up = forward.cross(right) * if mirrored { -1.0 } else { 1.0 };
+        let z = forward * if left_handed { 1.0 } else { -1.0 };
+        let rotation = Mat4::from_cols(
+            right.to_f32().extend(0.0),
+            up.to_f32().extend(0.0),
+            z.to_f32().extend(0.0),
+            Vec4::W,
+        );
+        let mut view = rotation.transpose();
+        view.w_axis = (way * distance).to_f32().extend(1.0);
+        View {
+            from_world: view,
+            projection,
+            left_handed,
+        }
+    })
 }
 
 /// Ellipsoids with semi-axes within a ratio of 50, as α = 0.01 makes them, anywhere.

@@ -8,6 +8,17 @@
     reason = "public to the tests alone, where names say it"
 )]
 
+/// Evaluates the last expression with the camera that is in the first, of either projection.
+#[macro_export]
+macro_rules! with_camera {
+    ($any:expr, $camera:ident => $body:expr) => {
+        match $any {
+            stochastic_light_culling::AnyCamera::Perspective($camera) => $body,
+            stochastic_light_culling::AnyCamera::Orthographic($camera) => $body,
+        }
+    };
+}
+
 pub mod adversary;
 pub mod certificate;
 pub mod command;

@@ -9,10 +9,12 @@ mod tile;
 pub use cluster::ClusterLight;
 pub use draw::fresnel;
 pub use light::Light;
-pub use tile::Tile;
+pub use tile::{Drawn, Tile};
 
 use fastrand::Rng;
-use stochastic_light_culling::{Direction, Ellipsoid, Sphere, Spheroid, TileTest, glam::Vec3};
+use stochastic_light_culling::{
+    Direction, Ellipsoid, Projection, Sphere, Spheroid, TileTest, glam::Vec3,
+};
 use twofloat::TwoFloat;
 
 use crate::reference::Vector;
@@ -54,18 +56,22 @@ pub enum Bound {
 
 impl Bound {
     /// The names of the bounds by which the light is not found to touch `tile`.
-    pub fn that_lose(&self, tile: &Tile) -> Vec<&'static str> {
+    pub fn that_lose<P: Projection>(&self, tile: &Tile<P>) -> Vec<&'static str> {
         self.that_fail(tile, |test| test.touches(&tile.rectangle, &tile.depths))
     }
 
     /// Those by which it is not found by the exact test.
-    pub fn that_lose_exactly(&self, tile: &Tile) -> Vec<&'static str> {
+    pub fn that_lose_exactly<P: Projection>(&self, tile: &Tile<P>) -> Vec<&'static str> {
         self.that_fail(tile, |test| {
             test.touches_exactly(&tile.rectangle, &tile.depths)
         })
     }
 
-    fn that_fail(&self, tile: &Tile, touches: impl Fn(&dyn TileTest) -> bool) -> Vec<&'static str> {
+    fn that_fail<P: Projection>(
+        &self,
+        tile: &Tile<P>,
+        touches: impl Fn(&dyn TileTest) -> bool,
+    ) -> Vec<&'static str> {
         let sphere = |sphere: Sphere| {
             sphere
                 .project(&tile.camera)

@@ -4,25 +4,26 @@ use std::f64::consts::TAU;
 
 use fastrand::Rng;
 use stochastic_light_culling::{
-    Camera, DepthInterval, PixelRectangle, TileRectangle,
+    Camera, DepthInterval, Error, Orthographic, Perspective, PixelRectangle, Projection,
+    TileRectangle,
     glam::{Mat4, Vec2, Vec4},
 };
 use twofloat::TwoFloat as Real;
 
 use super::{Reach, chance, log_uniform, unit_vector};
 use crate::reference::Vector;
-use crate::reference::camera::{View, off_centre};
+use crate::reference::camera::{View, off_centre, orthographic};
 use crate::reference::exact::{Exact, outward};
 
 /// A tile with a point in it that a light reaches.
 #[derive(Clone, Copy, Debug)]
-pub struct Tile {
-    pub camera: Camera,
+pub struct Tile<P = Perspective> {
+    pub camera: Camera<P>,
     pub rectangle: TileRectangle,
     pub depths: DepthInterval,
 }
 
-impl Tile {
+impl<P: Drawn> Tile<P> {
     /// A point that `light` reaches, from a random view, and the thinnest tile that holds it, or one
     /// not much larger.
     ///
@@ -56,7 +57,7 @@ impl Tile {
         }
         let way = outgoing * (reach * (1.0 - inside));
         let start = Exact::from(light.position());
-        let view = draw_view(rng, start + way, reach.hi() * distance);
+        let view = P::draw_view(rng, start + way, reach.hi() * distance);
         let mut seen = (start + way).before(&view);
         let mut depths = outward(seen.0[2]);
         if chance(rng, 0.3) {
@@ -73,9 +74,9 @@ impl Tile {
         if depths[0] <= 0.0 {
             return None;
         }
-        let [x, y] = [0, 1].map(|i| outward(seen.0[i] / seen.0[2]));
+        let [x, y] = P::coordinates(seen).map(outward);
         let tile = Self {
-            camera: Camera::new(view.from_world, view.projection).ok()?,
+            camera: P::camera(&view).ok()?,
             rectangle: TileRectangle::new(Vec2::new(x[0], y[0]), Vec2::new(x[1], y[1])).ok()?,
             depths: DepthInterval::new(depths[0], depths[1]).ok()?,
         };
@@ -113,18 +114,94 @@ impl Tile {
     }
 }
 
-/// A view from `distance` with `point` in it, or nearly, at fields of view to 170°.
-fn draw_view(rng: &mut Rng, point: Exact, distance: f64) -> View {
-    let edges = |rng: &mut Rng| {
-        let [a, b] = [(); 2].map(|()| log_uniform(rng, 0.05, 11.4));
-        match rng.u8(0..4) {
-            0 => [-a, b],
-            1 => [a, a + b],
-            _ => [-a, a],
-        }
-    };
-    let left_handed = rng.bool();
-    let (horizontal, vertical) = (edges(rng), edges(rng));
+/// A kind of projection whose views can be drawn.
+pub trait Drawn: Projection {
+    /// A view from `distance` with `point` in it, or nearly.
+    fn draw_view(rng: &mut Rng, point: Exact, distance: f64) -> View;
+
+    fn camera(view: &View) -> Result<Camera<Self>, Error>;
+
+    /// The coordinates in a tile's rectangle of a point of camera space.
+    fn coordinates(seen: Exact) -> [Real; 2];
+}
+
+/// Fields of view to 170°.
+impl Drawn for Perspective {
+    fn draw_view(rng: &mut Rng, point: Exact, distance: f64) -> View {
+        let [horizontal, vertical] = [edges(rng), edges(rng)];
+        let left_handed = rng.bool();
+        let [across, down] = [horizontal, vertical].map(narrowed);
+        let view = View {
+            from_world: draw_rotation(rng, left_handed),
+            projection: off_centre(left_handed, across, down, [0.0, 1.0]),
+            left_handed,
+        };
+        let [u, v] = [horizontal, vertical].map(|edges| between(rng, edges));
+        moved(view, point, [u * distance, v * distance, distance])
+    }
+
+    fn camera(view: &View) -> Result<Camera, Error> {
+        Camera::new(view.from_world, view.projection)
+    }
+
+    fn coordinates(seen: Exact) -> [Real; 2] {
+        let [x, y, depth] = seen.0;
+        [x / depth, y / depth]
+    }
+}
+
+/// Of the width of `distance`, about, and as deep as that, shallower or deeper. The near plane is anywhere.
+impl Drawn for Orthographic {
+    fn draw_view(rng: &mut Rng, point: Exact, distance: f64) -> View {
+        let edges = |rng: &mut Rng| edges(rng).map(|edge| edge * distance);
+        let [horizontal, vertical] = [edges(rng), edges(rng)];
+        let left_handed = rng.bool();
+        let depth_per_ndc = distance * log_uniform(rng, 1e-3, 1e3);
+        let [a, b] = [1.0 / depth_per_ndc, 5.0 * rng.f64() - 3.0].map(|x| x as f32);
+        let [across, down] = [horizontal, vertical].map(narrowed);
+        let view = View {
+            from_world: draw_rotation(rng, left_handed),
+            projection: orthographic(left_handed, across, down, [a, b]),
+            left_handed,
+        };
+        let [x, y] = [horizontal, vertical].map(|edges| between(rng, edges));
+        moved(
+            view,
+            point,
+            [x, y, between(rng, [1.0, 3.0]) * depth_per_ndc],
+        )
+    }
+
+    fn camera(view: &View) -> Result<Camera<Self>, Error> {
+        Camera::orthographic(view.from_world, view.projection)
+    }
+
+    fn coordinates(seen: Exact) -> [Real; 2] {
+        let [x, y, _] = seen.0;
+        [x, y]
+    }
+}
+
+/// The edges of a view at depth 1, in one direction.
+fn edges(rng: &mut Rng) -> [f64; 2] {
+    let [a, b] = [(); 2].map(|()| log_uniform(rng, 0.05, 11.4));
+    match rng.u8(0..4) {
+        0 => [-a, b],
+        1 => [a, a + b],
+        _ => [-a, a],
+    }
+}
+
+fn narrowed(edges: [f64; 2]) -> [f32; 2] {
+    edges.map(|x| x as f32)
+}
+
+fn between(rng: &mut Rng, [a, b]: [f64; 2]) -> f64 {
+    a + (b - a) * rng.f64()
+}
+
+/// Any rotation from world space to view space.
+fn draw_rotation(rng: &mut Rng, left_handed: bool) -> Mat4 {
     let forward = unit_vector(rng);
     let side = forward.orthogonal();
     let right = side.turned(forward.cross(side), rng.f64() * TAU);
@@ -135,22 +212,14 @@ fn draw_view(rng: &mut Rng, point: Exact, distance: f64) -> View {
         z.to_f32().extend(0.0),
         Vec4::W,
     );
-    let narrowed = |edges: [f64; 2]| edges.map(|x| x as f32);
-    let mut view = View {
-        from_world: rotation.transpose(),
-        projection: off_centre(
-            left_handed,
-            narrowed(horizontal),
-            narrowed(vertical),
-            [0.0, 1.0],
-        ),
-        left_handed,
-    };
-    let [u, v] = [horizontal, vertical].map(|[a, b]| a + (b - a) * rng.f64());
-    let wanted = Vector([u * distance, v * distance, distance]);
+    rotation.transpose()
+}
+
+/// The view from where `point` is at this place of camera space, to rounding.
+fn moved(mut view: View, point: Exact, place: [f64; 3]) -> View {
     let turned = Vector(point.before(&view).0.map(|x| x.hi()));
-    let mut offset = wanted - turned;
-    if !left_handed {
+    let mut offset = Vector(place) - turned;
+    if !view.left_handed {
         offset.0[2] = -offset.0[2];
     }
     view.from_world.w_axis = offset.to_f32().extend(1.0);

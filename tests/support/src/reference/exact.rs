@@ -28,11 +28,8 @@ impl Exact {
 
     /// `point` before the eye of `view`, with depth in the place of z.
     pub fn before(self, view: &View) -> Self {
-        let m = view.from_world.to_cols_array().map(f64::from);
-        let row =
-            |i: usize| self.0[0] * m[i] + self.0[1] * m[4 + i] + self.0[2] * m[8 + i] + m[12 + i];
-        let forward = if view.left_handed { 1.0 } else { -1.0 };
-        Self([row(0), row(1), row(2) * forward])
+        let [x, y, z] = self.0;
+        Self(view.rows().map(|[a, b, c, d]| x * a + y * b + z * c + d))
     }
 }
 

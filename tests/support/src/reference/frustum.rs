@@ -17,14 +17,29 @@ const FACES: [[usize; 4]; 6] = [
 #[derive(Clone, Copy, Debug)]
 pub struct Frustum {
     matrix: [Vector; 3],
-    /// From the least to the greatest x/z, y/z and z.
+    /// From the least to the greatest x/z, y/z and z, or x, y and z.
     sides: [[f64; 2]; 3],
     corners: [Vector; 8],
+    is_orthographic: bool,
 }
 
 impl Frustum {
     /// The image of a tile under `matrix`, whose third row is (0, 0, m).
     pub fn new(matrix: Mat3, tile: &TileRectangle, depths: &DepthInterval) -> Self {
+        Self::of(matrix, tile, depths, false)
+    }
+
+    /// The same of a tile that is a box.
+    pub fn of_box(matrix: Mat3, tile: &TileRectangle, depths: &DepthInterval) -> Self {
+        Self::of(matrix, tile, depths, true)
+    }
+
+    fn of(
+        matrix: Mat3,
+        tile: &TileRectangle,
+        depths: &DepthInterval,
+        is_orthographic: bool,
+    ) -> Self {
         let matrix = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(Vector::from);
         let sides = [
             [tile.min().x, tile.max().x],
@@ -35,12 +50,17 @@ impl Frustum {
         let corner = |i: usize| {
             let [x, y, z] = std::array::from_fn(|axis| sides[axis][i >> axis & 1]);
             let [a, b, d] = matrix;
-            (a * x + b * y + d) * z
+            if is_orthographic {
+                a * x + b * y + d * z
+            } else {
+                (a * x + b * y + d) * z
+            }
         };
         Self {
             matrix,
             sides,
             corners: std::array::from_fn(corner),
+            is_orthographic,
         }
     }
 
@@ -68,11 +88,10 @@ impl Frustum {
         let z = point.0[2] / d.0[2];
         let Vector([p0, p1, _]) = point - d * z;
         let area = a0 * b1 - a1 * b0;
-        let slopes = [
-            (p0 * b1 - p1 * b0) / area / z,
-            (a0 * p1 - a1 * p0) / area / z,
-        ];
-        let coordinates = [slopes[0], slopes[1], z];
+        let per_slope = if self.is_orthographic { 1.0 } else { z };
+        let x = (p0 * b1 - p1 * b0) / area / per_slope;
+        let y = (a0 * p1 - a1 * p0) / area / per_slope;
+        let coordinates = [x, y, z];
         let mut sides = self.sides.iter().zip(coordinates);
         sides.all(|([min, max], x)| *min <= x && x <= *max)
     }
