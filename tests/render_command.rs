@@ -49,10 +49,52 @@ fn refuses_values_outside_their_range() {
         (["--seed", "-1"], "-1"),
         (["--colour", "red"], "--colour"),
         (["--glossy", "Gold"], "Gold"),
+        (["--lights", "lamps"], "'lamps'"),
+        (["--clusters", "0"], "'0'"),
+        (["--clusters", "16"], "--lights vsgl"),
+        (["--clustering", "fis"], "--lights vsgl"),
+        (["--clustering", "colour"], "'colour'"),
     ] {
         // `=`, so that a negative number is not taken for an option.
         assert_refused("ranges", &[&arguments.join("=")], reason);
     }
+}
+
+#[test]
+fn refuses_bounds_that_smooth_lights_do_not_have() {
+    let arguments = ["--lights", "vsgl", "--bound", "sphere"];
+    assert_refused("smooth_bound", &arguments, "one bound, tight");
+}
+
+#[test]
+fn draws_smooth_lights() {
+    for clustering in ["fis", "kmeans"] {
+        let smooth = ["--lights", "vsgl", "--clustering", clustering];
+        let fewer = [&smooth[..], &["--clusters", "40", "--interleave", "2"]].concat();
+        for (arguments, count) in [(&smooth[..], 1024), (&fewer, 40)] {
+            let (json, pictures) = small_run(clustering, arguments);
+            assert_eq!(json["lights"], "vsgl");
+            assert_eq!(json["clusters"], count);
+            assert_eq!(json["clustering"], clustering);
+            let methods = json["methods"].as_array().expect("a list of methods");
+            let kinds = methods.iter().map(|row| (&row["bound"], &row["refined"]));
+            let [no, yes] = [false, true].map(Value::from);
+            let tight = Value::from("tight");
+            assert!(kinds.eq([(&tight, &no), (&tight, &yes)]));
+            for row in methods.iter().chain([&json["diffuse"]]) {
+                assert!(number(row, "contributing_per_pixel") > 0.0);
+                assert!(number(row, "contributing_per_pixel") <= number(row, "lights_per_pixel"));
+                assert!(number(row, "rmse") > 0.0);
+            }
+            // A light is accepted whatever the tile.
+            let accepted = |i: usize| number(&methods[i], "contributing_per_pixel");
+            assert_eq!(accepted(0), accepted(1));
+            assert!(pictures.contains(&"indirect.png".into()));
+        }
+    }
+    let (points, _) = small_run("points", &["--lights", "vpl"]);
+    assert_eq!(points["lights"], "vpl");
+    assert_eq!(points["clusters"], Value::Null);
 }
 
 #[test]

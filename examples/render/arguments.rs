@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
-use common::frame::BoundKind;
+use common::frame::{BoundKind, Clustering};
 use common::scene::Gloss;
 use stochastic_light_culling::{Error, Ggx, Roulette, Schlick};
 
@@ -36,6 +36,18 @@ pub struct Arguments {
     /// Rays from the light; each hit makes a virtual point light
     #[arg(long, default_value_t = 16384, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     pub vpls: u32,
+
+    /// What lights the scene: every point, or smooth lights that each stand for a cluster of points
+    #[arg(long, default_value = "vpl")]
+    pub lights: LightKind,
+
+    /// How many smooth lights stand for the glossy points, and how many for the diffuse ones [default: 1024]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    pub clusters: Option<u32>,
+
+    /// What points go to a cluster [default: fis]
+    #[arg(long)]
+    pub clustering: Option<Clustering>,
 
     /// Variance parameter δ: less is less noise and more work
     #[arg(long, default_value = "0.001", value_parser = roulette)]
@@ -80,6 +92,21 @@ pub struct Arguments {
 }
 
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum LightKind {
+    /// Virtual point lights
+    Vpl,
+    /// Virtual spherical Gaussian lights
+    Vsgl,
+}
+
+/// How to make smooth lights.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Clusters {
+    pub count: u32,
+    pub clustering: Clustering,
+}
+
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub enum ReferenceKind {
     /// At every pixel
     Full,
@@ -95,6 +122,30 @@ impl Arguments {
         let ggx = self.alpha.map_or_else(|| Ggx::new(0.1), Ok)?;
         let fresnel = self.f0.map_or_else(|| Schlick::new(0.9), Ok)?;
         Ok(Gloss::new(ggx, fresnel))
+    }
+
+    /// How to make smooth lights; none for points.
+    ///
+    /// # Errors
+    ///
+    /// An option that means nothing beside the others.
+    pub fn smooth(&self) -> Result<Option<Clusters>, String> {
+        match self.lights {
+            LightKind::Vpl if self.clusters.is_some() => {
+                Err("--clusters is for --lights vsgl".into())
+            }
+            LightKind::Vpl if self.clustering.is_some() => {
+                Err("--clustering is for --lights vsgl".into())
+            }
+            LightKind::Vpl => Ok(None),
+            LightKind::Vsgl if self.bound.iter().any(|bound| *bound != BoundKind::Tight) => {
+                Err("--lights vsgl has one bound, tight".into())
+            }
+            LightKind::Vsgl => Ok(Some(Clusters {
+                count: self.clusters.unwrap_or(1024),
+                clustering: self.clustering.unwrap_or(Clustering::Fis),
+            })),
+        }
     }
 
     /// The bounds to measure, each once, from the loosest to the tightest.

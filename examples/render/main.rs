@@ -11,6 +11,7 @@ mod arguments;
 mod look;
 mod output;
 mod positions;
+mod smooth;
 
 use std::process::ExitCode;
 
@@ -23,7 +24,7 @@ use common::progress::progress;
 use common::scene::{self, LitPoints, Scene, SurfaceBuffer, Tracer};
 use stochastic_light_culling::{Camera, Error, Interleave, TileGrid, glam::Vec3};
 
-use arguments::{Arguments, ReferenceKind};
+use arguments::{Arguments, Clusters, ReferenceKind};
 use output::{Request, Results, Row};
 
 fn main() -> ExitCode {
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
 /// The whole corridor. Whatever can be refused is, before anything is written.
 fn render(arguments: &Arguments) -> Result<(), String> {
     let said = |error: Error| error.to_string();
+    let clusters = arguments.smooth()?;
     let interleave = Interleave::new(arguments.size, arguments.interleave).map_err(said)?;
     TileGrid::new(arguments.size, arguments.tile).map_err(said)?;
     let gloss = arguments.gloss().map_err(said)?;
@@ -74,8 +76,14 @@ fn render(arguments: &Arguments) -> Result<(), String> {
         least_distance_squared: 4.0 * points.footprint,
     };
 
-    let (glossy, diffuse) = measure(arguments, &frame, &tilings, &camera, &lights)?;
     let mut steps = vec![("G-buffer".into(), surfaces_ms), ("VPLs".into(), points_ms)];
+    let (glossy, diffuse) = if let Some(clusters) = clusters {
+        let measured = smooth::measure(arguments, clusters, &frame, &tilings, &camera, &points)?;
+        steps.push(("clusters".into(), measured.cluster_ms));
+        (measured.glossy, measured.diffuse)
+    } else {
+        measure(arguments, &frame, &tilings, &camera, &lights)?
+    };
     let bounds = glossy
         .iter()
         .filter(|measured| !measured.refined)
@@ -126,7 +134,7 @@ fn render(arguments: &Arguments) -> Result<(), String> {
         diffuse: row(&surfaces, &diffuse, diffuse_error),
         steps,
     };
-    report(arguments, &scene, &results);
+    report(arguments, clusters, &scene, &results);
     Ok(())
 }
 
@@ -281,7 +289,7 @@ fn row(surfaces: &SurfaceBuffer, measured: &Measured, rmse: Option<f64>) -> Row 
 }
 
 /// The table on standard output, or on standard error with JSON on standard output.
-fn report(arguments: &Arguments, scene: &Scene, results: &Results) {
+fn report(arguments: &Arguments, clusters: Option<Clusters>, scene: &Scene, results: &Results) {
     let default = |number: f32| (!scene.has_own_gloss()).then_some(number);
     let request = Request {
         scene: &arguments.scene,
@@ -292,6 +300,7 @@ fn report(arguments: &Arguments, scene: &Scene, results: &Results) {
             .f0
             .map_or(default(0.9), |fresnel| Some(fresnel.f0())),
         vpls: arguments.vpls,
+        clusters,
         delta: arguments.delta.delta(),
         size: arguments.size,
         seed: arguments.seed,

@@ -17,6 +17,9 @@ pub fn json(request: &Request, results: &Results) -> String {
         "seed": request.seed,
         "methods": methods,
         "diffuse": row(&results.diffuse),
+        "lights": if request.clusters.is_some() { "vsgl" } else { "vpl" },
+        "clusters": request.clusters.map(|clusters| clusters.count),
+        "clustering": request.clusters.map(|clusters| clusters.name()),
     })
     .to_string()
 }

@@ -1,8 +1,12 @@
 //! What a run leaves behind: pictures, a table and JSON.
 
+use clap::ValueEnum;
+
 mod heat_map;
 mod json;
 mod table;
+
+use crate::arguments::Clusters;
 
 pub use heat_map::heat_map;
 pub use json::json;
@@ -34,9 +38,19 @@ pub struct Request<'a> {
     pub alpha: Option<f32>,
     pub f0: Option<f32>,
     pub vpls: u32,
+    /// None for points.
+    pub clusters: Option<Clusters>,
     pub delta: f32,
     pub size: [u32; 2],
     pub seed: u32,
+}
+
+impl Clusters {
+    /// As the command line has it.
+    fn name(&self) -> String {
+        let value = self.clustering.to_possible_value();
+        value.map_or_else(String::new, |value| value.get_name().into())
+    }
 }
 
 /// What came of it.

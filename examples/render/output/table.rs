@@ -8,9 +8,10 @@ pub fn table(request: &Request, results: &Results) -> String {
     let of = |number: Option<f32>| number.map_or("the file's".into(), |number| number.to_string());
     let mut lines = vec![
         format!(
-            "{}, {width}×{height}, {} rays, α = {}, F0 = {}, δ = {}",
+            "{}, {width}×{height}, {} rays, {}α = {}, F0 = {}, δ = {}",
             request.scene,
             request.vpls,
+            clusters(request),
             of(request.alpha),
             of(request.f0),
             request.delta
@@ -29,6 +30,13 @@ pub fn table(request: &Request, results: &Results) -> String {
     let steps: Vec<String> = steps.map(|(step, ms)| format!("{step} {ms:.1}")).collect();
     lines.push(format!("ms: {}", steps.join(", ")));
     lines.join("\n")
+}
+
+fn clusters(request: &Request) -> String {
+    let Some(clusters) = request.clusters else {
+        return String::new();
+    };
+    format!("{} clusters by {}, ", clusters.count, clusters.name())
 }
 
 fn line(kind: &str, row: &Row) -> String {

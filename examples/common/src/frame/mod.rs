@@ -2,22 +2,27 @@
 //! what to compare it with.
 
 mod bounds;
+mod clusters;
 mod cull;
 mod denoise;
 mod lights;
 mod measure;
 mod metrics;
 mod reference;
+mod reflectance;
 mod shade;
+mod smooth;
 mod tiles;
 
 pub use bounds::{BoundKind, GlossyLight};
+pub use clusters::{Cluster, Clustering, LightMaps};
 pub use denoise::cross_bilateral;
 pub use lights::{Light, Lights, ordered, redraw};
 pub use measure::{Measured, Tiling, measure_diffuse, measure_glossy, timed};
 pub use metrics::{mean_over_surfaces, rmse};
 pub use reference::Reference;
 pub use shade::{Path, Shaded, Shading, Sums, count_facing, shade};
+pub use smooth::{SmoothLight, measure_smooth, smooth_lights};
 pub use tiles::{Slicing, Subregion, Tiles};
 
 use stochastic_light_culling::{Interleave, Roulette};

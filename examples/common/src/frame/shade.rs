@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 use stochastic_light_culling::{
-    BlockEstimates, Estimate, Lobe, PointBlock, RadianceEstimator, Roulette, ShadedPoint,
-    ShadingBatch, glam::Vec3,
+    BlockEstimates, Estimate, Lobe, PointBlock, RadianceEstimator, Roulette, ShadedLight,
+    ShadedPoint, ShadingBatch, Vsgl, glam::Vec3,
 };
 
-use super::{Frame, Light};
+use super::{Frame, Light, SmoothLight};
 use crate::scene::Surface;
 
 /// For each pixel of an image, row by row: irradiance, the lights whose lobe was evaluated, and those
@@ -190,7 +190,22 @@ impl<L: Lobe + Copy> Shading<L> {
             tints: lights.iter().map(|light| light.tint).collect(),
         }
     }
+}
 
+impl Shading<Vsgl> {
+    /// Of smooth lights, with a roulette other than that of the frame perhaps.
+    pub fn smooth(roulette: &Roulette, lights: &[SmoothLight]) -> Self {
+        let mut batch = ShadingBatch::<Vsgl>::new();
+        batch.extend(lights.iter().map(|light| (&light.vsgl, light.xi)));
+        Self {
+            estimator: RadianceEstimator::new(roulette),
+            batch,
+            tints: lights.iter().map(|light| light.tint).collect(),
+        }
+    }
+}
+
+impl<L: ShadedLight> Shading<L> {
     /// Shades the pixels of some subregions of `image`, as [`shade`] does all.
     pub fn shade_subregions<'a>(
         &self,

@@ -53,6 +53,23 @@ pub struct Arriving {
 }
 
 impl Lamp {
+    /// The lamp moved across its direction from `target`, level, by `moved` times its distance from there.
+    pub fn moved_aside(mut self, target: Vec3, moved: f32) -> Self {
+        let aside = |to_light: Vec3| moved * to_light.cross(Vec3::Y).normalize_or(Vec3::X);
+        match &mut self {
+            Self::Parallel { to_light, .. } => {
+                *to_light = (*to_light + aside(*to_light)).normalize();
+            }
+            Self::Window(Spot { position, .. })
+            | Self::Point { position, .. }
+            | Self::Cone { position, .. } => {
+                let to_light = *position - target;
+                *position += aside(to_light) * to_light.length();
+            }
+        }
+        self
+    }
+
     /// What arrives at `point`; `None` where the lamp does not shine.
     pub fn arriving(&self, point: Vec3) -> Option<Arriving> {
         let (position, intensity) = match *self {

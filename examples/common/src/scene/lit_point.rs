@@ -6,7 +6,7 @@ use stochastic_light_culling::{
 };
 
 use super::mesh::{Gloss, Material};
-use super::photon::Photon;
+use super::photon::{Photon, Texel};
 
 /// A point that sends on light: what becomes a virtual point light.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +16,8 @@ pub struct LitPoint<L> {
     /// In W, for red, green and blue; the lobe is the same for the three.
     pub flux: Vec3,
     pub lobe: L,
+    /// Which ray it was lit by.
+    pub texel: Texel,
 }
 
 /// The lit points of a scene, by what they reflect.
@@ -51,6 +53,7 @@ impl LitPoints {
                     normal,
                     flux: photon.flux * material.tint,
                     lobe: GgxLobe::new(gloss.light_ggx, gloss.fresnel, photon.incidence),
+                    texel: photon.texel,
                 });
             }
             let albedo = material.albedo.max_element();
@@ -60,6 +63,7 @@ impl LitPoints {
                     normal,
                     flux: photon.flux * (material.albedo / albedo),
                     lobe: LambertLobe::new(albedo, normal)?,
+                    texel: photon.texel,
                 });
             }
         }

@@ -24,7 +24,7 @@ mod viewpoint;
 pub use lamp::{Arriving, Lamp};
 pub use lit_point::{LitPoint, LitPoints};
 pub use mesh::{Extent, Gloss, Material, Mesh};
-pub use photon::trace_photons;
+pub use photon::{Texel, trace_photons};
 pub use random::{Purpose, uniform};
 pub use surface::{Surface, SurfaceBuffer};
 pub use tracer::{Hit, Tracer};

@@ -17,6 +17,18 @@ pub struct Photon {
     /// The area of surface that the photon stands for.
     pub footprint: f32,
     pub material: usize,
+    pub texel: Texel,
+}
+
+/// Which ray of a lamp it is: a texel of a reflective shadow map.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Texel {
+    /// The number of the map: each beam of a lamp has one.
+    pub map: u32,
+    /// Its width and height. Some rows have a column less; their last texel sees nothing.
+    pub size: [u32; 2],
+    /// Column and row.
+    pub place: [u32; 2],
 }
 
 /// The photons of `count` rays, in random order. Each of the beams of `lamps` has its share by power, one ray
@@ -29,13 +41,19 @@ pub fn trace_photons(tracer: &Tracer, lamps: &[Lamp], count: u32, seed: u32) -> 
         .collect();
     let mut photons: Vec<(f32, Photon)> = Vec::new();
     let starts = starts(&beams, count);
-    for (beam, of_beam) in beams.iter().zip(starts.windows(2)) {
+    for (map, (beam, of_beam)) in (0..).zip(beams.iter().zip(starts.windows(2))) {
         let (start, end) = (of_beam[0], of_beam[1]);
         let grid = Grid::new(end - start);
         photons.par_extend((start..end).into_par_iter().filter_map(|ray| {
             let jitter = [Purpose::JitterX, Purpose::JitterY].map(|p| uniform(ray, p, seed));
             let (x, y, area) = grid.point(ray - start, jitter);
+            let texel = Texel {
+                map,
+                size: grid.size(),
+                place: grid.place(ray - start),
+            };
             let photon = trace_photon(tracer, beam, [x, y], area)?;
+            let photon = Photon { texel, ..photon };
             Some((uniform(ray, Purpose::Shuffle, seed), photon))
         }));
     }
@@ -74,6 +92,7 @@ fn trace_photon(tracer: &Tracer, beam: &Beam, [x, y]: [f32; 2], area: f32) -> Op
         flux: ray.flux,
         footprint: (distance_squared * ray.solid_angle + ray.area) / cosine.max(0.1),
         material: hit.material,
+        texel: Texel::default(),
     })
 }
 
@@ -94,13 +113,23 @@ impl Grid {
         (u64::from(row) * u64::from(self.cells) / u64::from(self.rows)) as u32
     }
 
-    /// The point at `jitter`, in (0, 1]², of a cell, and the cell's area.
-    fn point(&self, cell: u32, jitter: [f32; 2]) -> (f32, f32, f32) {
+    /// The number of columns, where a row has most, and of rows.
+    fn size(&self) -> [u32; 2] {
+        [self.cells.div_ceil(self.rows), self.rows]
+    }
+
+    /// Column and row of a cell.
+    fn place(&self, cell: u32) -> [u32; 2] {
         let row = ((u64::from(cell) + 1) * u64::from(self.rows)).div_ceil(u64::from(self.cells));
         let row = row as u32 - 1;
-        let (start, end) = (self.start(row), self.start(row + 1));
-        let columns = (end - start) as f32;
-        let x = ((cell - start) as f32 + jitter[0]) / columns;
+        [cell - self.start(row), row]
+    }
+
+    /// The point at `jitter`, in (0, 1]², of a cell, and the cell's area.
+    fn point(&self, cell: u32, jitter: [f32; 2]) -> (f32, f32, f32) {
+        let [column, row] = self.place(cell);
+        let columns = (self.start(row + 1) - self.start(row)) as f32;
+        let x = (column as f32 + jitter[0]) / columns;
         let y = (row as f32 + jitter[1]) / self.rows as f32;
         let area = 4.0 / (columns * self.rows as f32);
         (2.0 * x - 1.0, 2.0 * y - 1.0, area)
