@@ -138,7 +138,8 @@ fn check_every_study(scene: &str) {
             "spread",
             "tests",
             "tightness",
-            "vpl_count"
+            "vpl_count",
+            "vsgl"
         ]
     );
 

@@ -52,6 +52,8 @@ pub enum StudyKind {
     Spread,
     /// Transformed cosines in the place of GGX: error of the lobes and of pictures, and milliseconds
     Ltsd,
+    /// Smooth lights in the place of points: error against time, and change under a moving light
+    Vsgl,
 }
 
 impl Arguments {

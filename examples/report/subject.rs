@@ -1,7 +1,7 @@
 //! A scene as the studies see it: what the eye sees, and lights made of it again and again.
 
 use common::frame::{Frame, GlossyLight, Lights, Reference, Slicing, Tiles};
-use common::scene::{LitPoints, Scene, Surface, SurfaceBuffer, Tracer, trace_photons};
+use common::scene::{Lamp, LitPoints, Scene, Surface, SurfaceBuffer, Tracer, trace_photons};
 use stochastic_light_culling::{Camera, Error, Ggx, Interleave, Roulette, Schlick, glam::Vec3};
 
 use crate::baseline::fewer;
@@ -117,7 +117,16 @@ impl<'a> Subject<'a> {
     }
 
     fn points(&self, gloss: Gloss, vpls: u32, seed: u32) -> LitPoints {
-        let photons = trace_photons(&self.tracer, &self.scene.lamps, vpls, seed);
+        self.points_moved(gloss, vpls, seed, 0.0)
+    }
+
+    /// What `vpls` rays light from lamps that are moved aside by `moved` times their distance from the view.
+    pub fn points_moved(&self, gloss: Gloss, vpls: u32, seed: u32, moved: f32) -> LitPoints {
+        let target = self.scene.viewpoint.target;
+        let lamps: Vec<Lamp> = (self.scene.lamps.iter())
+            .map(|lamp| lamp.moved_aside(target, moved))
+            .collect();
+        let photons = trace_photons(&self.tracer, &lamps, vpls, seed);
         LitPoints::new(
             &photons,
             &self.scene.mesh.materials,
@@ -200,7 +209,7 @@ impl<'a> Subject<'a> {
 
     /// Between pixels that are compared, so that there are about six thousand; odd, so that all
     /// subregions of the usual widths are met alike.
-    fn stride(&self) -> usize {
+    pub fn stride(&self) -> usize {
         let pixels = f64::from(self.effort.size[0] * self.effort.size[1]);
         (pixels / 6000.0).sqrt() as usize | 1
     }

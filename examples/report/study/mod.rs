@@ -10,6 +10,7 @@ mod spread;
 mod tests;
 mod tightness;
 mod vpl_count;
+mod vsgl;
 
 use image::RgbImage;
 
@@ -44,6 +45,7 @@ pub fn make(kind: StudyKind, subjects: &[Subject], done: &dyn Fn()) -> Vec<Study
         StudyKind::Interleaving => interleaving::make(subjects, done),
         StudyKind::Receivers => receivers::make(subjects, done),
         StudyKind::Spread => spread::make(subjects, done),
+        StudyKind::Vsgl => vsgl::make(subjects, done),
         StudyKind::Ltsd => return ltsd::make(subjects, done),
     };
     vec![study]
@@ -56,6 +58,7 @@ pub fn parts(kind: StudyKind, subjects: usize) -> usize {
         StudyKind::Ltsd => ltsd::PARTS,
         StudyKind::EqualTime => subjects * equal_time::ROUGHNESSES.len(),
         StudyKind::Spread => subjects * spread::ROUGHNESSES.len(),
+        StudyKind::Vsgl => subjects * vsgl::ROUGHNESSES.len(),
         _ => subjects,
     }
 }
