@@ -117,10 +117,14 @@ impl Finish<'_> {
             if let Ok(smoothest) = Ggx::new(SMOOTHEST) {
                 sum += weight * self.direct(&next, &reflector.smoothed(smoothest));
             }
+            let diffuse = weight * material.true_albedo() * FRAC_1_PI;
+            if diffuse.max_element() > 0.0 {
+                sum += diffuse * self.sky(path, &next);
+            }
             gathers.push(Gather {
                 column: path.column,
                 brightest: BRIGHTEST_INDIRECT * path.share / RAYS as f32,
-                weight: weight * material.true_albedo() * FRAC_1_PI,
+                weight: diffuse,
                 position: next.position,
                 normal: next.normal,
             });
