@@ -137,12 +137,14 @@ pub(crate) struct Caps<N> {
 
 impl<N: Single> Caps<N> {
     /// The greatest ω·r for a vector `row` = r of any length.
+    #[cfg(feature = "ltc")]
     #[inline(always)]
     pub fn greatest_product(&self, row: Vector3<N::Double>) -> N::Double {
         row.dot(self.axis.widen()) + row.length() * self.chord.widen()
     }
 
     /// The least ‖Rω‖ for a matrix R with these `rows`, whose singular values are at most `norm`. May be negative.
+    #[cfg(feature = "ltc")]
     #[inline(always)]
     pub fn least_image(&self, rows: [Vector3<N::Double>; 3], norm: N::Double) -> N::Double {
         let axis = self.axis.widen();
