@@ -186,6 +186,7 @@ fn check_every_study(scene: &str) {
             .zip(&knowing)
             .all(|(blind, knowing)| blind > knowing)
     );
+    check_smooth_lights(&studies["vsgl"]);
     let fit = &studies["ltsd_fit"];
     let [f0, error, energy] = ["f0", "relative_l2", "energy"].map(|name| of(fit, name));
     for ((f0, error), energy) in f0.iter().zip(error).zip(energy) {
@@ -214,6 +215,20 @@ fn check_every_study(scene: &str) {
         let is_number = !["tests", "bounds"].contains(&&*functions["kind"][0]);
         assert!(!is_number || error < 0.5, "{name}: {error}");
     }
+}
+
+fn check_smooth_lights(study: &Columns) {
+    let methods: HashSet<&str> = study["method"].iter().map(|s| &**s).collect();
+    let all = ["vpl", "vsgl", "vsgl_culled", "kmeans"];
+    assert_eq!(methods, HashSet::from(all));
+    for name in ["alpha", "lights", "ms"] {
+        assert!(
+            numbers(study, name).iter().all(|number| *number > 0.0),
+            "{name}"
+        );
+    }
+    let rmse = numbers(study, "relative_rmse");
+    assert!(rmse.iter().all(|rmse| *rmse >= 0.0));
 }
 
 #[test]
