@@ -194,9 +194,9 @@ impl RadianceEstimator {
     ///         *sum += reflected;
     ///     }
     /// });
-    /// // The highlight is half way, where the mirror direction meets the lamp.
+    /// // The highlight is about half way, where the mirror direction meets the lamp, but nearer to the lamp.
     /// let brightest = (0..16).max_by(|i, j| sums[*i].total_cmp(&sums[*j]));
-    /// assert_eq!(brightest, Some(5));
+    /// assert_eq!(brightest, Some(6));
     /// # Ok::<(), stochastic_light_culling::Error>(())
     /// ```
     ///
