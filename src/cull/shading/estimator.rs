@@ -142,7 +142,6 @@ impl RadianceEstimator {
         mut each: impl FnMut(&BlockEstimates),
     ) {
         let frame = &self.frame;
-        let each = &mut |estimates: &BlockEstimates, _: &[f32; PointBlock::LEN]| each(estimates);
         dispatch!(self.level, simd => evaluate_block(
             simd,
             frame,
@@ -151,7 +150,8 @@ impl RadianceEstimator {
             block,
             #[inline(always)]
             |_, arriving: &Evaluated<_>| arriving.radiance.zero(),
-            each,
+            #[inline(always)]
+            |estimates: &BlockEstimates, _: &[f32; PointBlock::LEN]| each(estimates),
         ));
     }
 
@@ -278,11 +278,19 @@ impl RadianceEstimator {
         mut each: impl FnMut(A, usize, &Estimate) -> A,
     ) -> A {
         let frame = &self.frame;
-        let points = points.into_iter().map(|(point, list)| (point, (), list));
-        let each = &mut |state, turn, estimate: &Estimate, _| each(state, turn, estimate);
-        dispatch!(self.level, simd => {
-            fold_pairs::<_, L, NoReceivers, A>(simd, frame, lights, points, init, each)
-        })
+        let points = points.into_iter().map(
+            #[inline(always)]
+            |(point, list)| (point, (), list),
+        );
+        dispatch!(self.level, simd => fold_pairs::<_, L, NoReceivers, A>(
+            simd,
+            frame,
+            lights,
+            points,
+            init,
+            #[inline(always)]
+            |state, turn, estimate: &Estimate, _| each(state, turn, estimate),
+        ))
     }
 
     /// Evaluates at each of `receivers` the lights of its list. Folds the accepted ones as
@@ -301,9 +309,10 @@ impl RadianceEstimator {
         mut each: impl FnMut(A, usize, &Estimate, f32) -> A,
     ) -> A {
         let (frame, each) = (&self.frame, &mut each);
-        let receivers = receivers
-            .into_iter()
-            .map(|(receiver, list)| (receiver.point(), receiver.lobe, list));
+        let receivers = receivers.into_iter().map(
+            #[inline(always)]
+            |(receiver, list)| (receiver.point(), receiver.lobe, list),
+        );
         dispatch!(self.level, simd => {
             fold_pairs::<_, L, Receivers<_, R>, A>(simd, frame, lights, receivers, init, each)
         })
