@@ -126,9 +126,9 @@ impl MipPyramid<'_, ClusterSums> {
     /// distributed numbers have a density that is proportional to the flux of texels. `None` if the map has no
     /// flux.
     ///
-    /// From the top down the numbers choose one of four texels, first its column, then its row, and what is
-    /// left of each goes on [Clarberg et al. 2005]. So points that are spread evenly remain so. Numbers beyond
-    /// the ends count as the ends, and NaN as zero.
+    /// From the top down the numbers select one of four texels, first its column, then its row, and are rescaled
+    /// within its share [Clarberg et al. 2005]. So points that are spread evenly remain so. Numbers below 0 count
+    /// as 0, and so does NaN; those from 1 on count as nearly 1.
     #[must_use]
     pub fn position_by_flux(&self, numbers: [f32; 2]) -> Option<[f32; 2]> {
         // False for NaN.
@@ -186,8 +186,8 @@ impl MipPyramid<'_, ClusterSums> {
 /// The largest number below 1.
 const BELOW_ONE: f64 = 1.0 - 0.5 * f64::EPSILON;
 
-/// Whether `number` in \[0, 1) is beyond the share of `first`, and what is left of it, in \[0, 1) too. What has
-/// no flux is not chosen, if either has.
+/// Whether `number` in \[0, 1) selects the second of two texels with these fluxes. The number is rescaled to
+/// \[0, 1) within its share. A texel without flux is not selected unless both have none.
 fn choose(number: &mut f64, first: f64, second: f64) -> bool {
     let cut = first / (first + second).max(f64::MIN_POSITIVE);
     let is_second = *number >= cut && second > 0.0;

@@ -2,12 +2,9 @@ use core::f64::consts::TAU;
 
 use glam::Vec3;
 
-use super::{Cap, Ggx, Incidence, Lobe, LobeNumbers, padded, unit};
+use super::{Cap, Lobe, LobeNumbers, padded, unit};
 use crate::base::{Direction, Error, number_in};
-use crate::num::{
-    Real, Single, Vector3, exact_dot, exponential, ln_1p_f64, one_minus_exponential, round_up,
-    sin_cos, sqrt_f64,
-};
+use crate::num::{Real, Single, Vector3, exponential, one_minus_exponential, round_up};
 
 /// Budget for the value of a maximum within a cap.
 const MAXIMUM_ROUNDINGS: u16 = 8;
@@ -63,12 +60,6 @@ impl SphericalGaussian {
     /// resolve.
     pub const MAX_SHARPNESS: f32 = 4_194_304.0;
 
-    /// The sharpness λ_d of the SG that stands for Lambert's lobe [Tokuyoshi 2016, Sec. 2.1].
-    ///
-    /// Least squares over all directions give 2.14 with a free amplitude, and 2.29 with the integral of the
-    /// lobe. Toksvig's rule gives 2 for the lobe's mean direction, which is ⅔ of the normal.
-    pub const DIFFUSE_SHARPNESS: f32 = 2.0;
-
     /// Creates the SG about `axis` = ξ with `sharpness` = λ and `amplitude` = c in sr⁻¹. It is zero
     /// everywhere for c = 0.
     ///
@@ -106,76 +97,6 @@ impl SphericalGaussian {
             sharpness,
             amplitude: amplitude as f32,
         })
-    }
-
-    /// Approximates the [`LambertLobe`](crate::LambertLobe) of a surface with `normal` that reflects the share
-    /// `albedo` of the light, by an SG with the same integral [Tokuyoshi 2016, Eq. 1].
-    ///
-    /// Unlike that lobe it does not end at the horizon. Its sharpness is
-    /// [`DIFFUSE_SHARPNESS`](Self::DIFFUSE_SHARPNESS).
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Number`] if `albedo` is outside \[0, 1\] or NaN.
-    pub fn diffuse(albedo: f32, normal: Direction) -> Result<Self, Error> {
-        let albedo = number_in("albedo", albedo, "in [0, 1]", 0.0..=1.0)?;
-        Self::with_integral(normal, Self::DIFFUSE_SHARPNESS, albedo)
-    }
-
-    /// Approximates the [`GgxLobe`](crate::GgxLobe) of a surface that reflects the share `reflectance` = R_s
-    /// of the light, by an SG with that integral [Tokuyoshi 2016, Eq. 2].
-    ///
-    /// The axis is the mirror direction ξ_s, and λ_s = 1/(2α²ξ_s·n): the NDF is an SG with the sharpness 2/α²
-    /// in the half vector [Wang et al. 2009]. A λ_s above [`MAX_SHARPNESS`](Self::MAX_SHARPNESS) is lowered to
-    /// that. For light from below the surface or at grazing incidence the SG is zero everywhere.
-    ///
-    /// The relative error in the square mean is 0.2 to 0.3 for α ≤ 0.4 and light from up to 30° off the normal,
-    /// since the NDF has longer tails than a Gaussian. It is 0.4 to 0.5 at 60° and about 1 at 80°.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Number`] if `reflectance` is outside \[0, 1\] or NaN.
-    pub fn specular(ggx: Ggx, reflectance: f32, incidence: Incidence) -> Result<Self, Error> {
-        let reflectance = number_in("reflectance", reflectance, "in [0, 1]", 0.0..=1.0)?;
-        let Incidence { normal, incoming } = incidence;
-        let cosine = exact_dot(Vector3::from(normal), incoming.into());
-        let axis = incoming.mirrored(normal);
-        if cosine <= 0.0 {
-            return Self::new(axis, 0.0, 0.0);
-        }
-        let alpha = f64::from(ggx.roughness());
-        let sharpness = 0.5 / (alpha * alpha * cosine);
-        let sharpness = sharpness.min(Self::MAX_SHARPNESS.into()) as f32;
-        Self::with_integral(axis, sharpness, reflectance)
-    }
-
-    /// Creates the SG with the given `integral` whose mean direction is `mean` = ξ̄, by Toksvig's rule: its
-    /// axis is along ξ̄, and λ = ‖ξ̄‖/(1 − ‖ξ̄‖) [Tokuyoshi 2016, Sec. 3.1; Toksvig 2005].
-    ///
-    /// It undoes [`mean_direction`](Self::mean_direction). The weighted mean of the mean directions of several
-    /// lobes makes the SG that stands for all of them. For ξ̄ = 0 the SG is constant, λ = 0, and its axis is
-    /// arbitrary. λ is at most [`MAX_SHARPNESS`](Self::MAX_SHARPNESS), as for ‖ξ̄‖ = 1.
-    ///
-    /// `mean` is in double precision, since in single precision a length near 1 would lose the digits of λ.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Vector`] if a component of `mean` is NaN or its length is above 1 by more than 10⁻⁶;
-    /// [`Error::Number`] as [`with_integral`](Self::with_integral).
-    pub fn from_mean_direction(mean: [f64; 3], integral: f32) -> Result<Self, Error> {
-        let mean = Vector3::from(mean);
-        let length = mean.length();
-        // False for NaN.
-        let is_valid = length <= 1.0 + 1e-6;
-        if !is_valid {
-            return Err(Error::Vector {
-                quantity: "mean direction",
-                value: Vec3::from(Vector3::narrow(mean)),
-                valid: "no longer than 1",
-            });
-        }
-        let (axis, sharpness) = toksvig(mean, 1.0 - length);
-        Self::with_integral(axis, sharpness, integral)
     }
 
     /// The SG of numbers that are known to be valid.
@@ -224,22 +145,6 @@ impl SphericalGaussian {
         integral.min(f32::MAX.into()) as f32
     }
 
-    /// The mean direction ξ̄ = λ/(λ+1) ξ by Toksvig's rule [Tokuyoshi 2016, Sec. 3.1].
-    ///
-    /// The rule is rational and easily undone ([`from_mean_direction`](Self::from_mean_direction)). The exact
-    /// mean is coth λ − 1/λ times ξ: the same for λ → ∞, and a third as long for λ → 0.
-    #[must_use]
-    pub fn mean_direction(&self) -> [f64; 3] {
-        let Vector3 { x, y, z } = self.mean();
-        [x, y, z]
-    }
-
-    #[inline]
-    pub(crate) fn mean(&self) -> Vector3<f64> {
-        let sharpness = f64::from(self.sharpness);
-        unit(Vector3::from(self.axis)) * (sharpness / (sharpness + 1.0))
-    }
-
     /// The product with `other`, which is an SG too, in the form that does not cancel
     /// [Tokuyoshi et al. 2024].
     ///
@@ -273,46 +178,6 @@ impl SphericalGaussian {
         self.product(other).integral()
     }
 
-    /// Draws a direction with the density v(ω)/∫v dω, the von Mises–Fisher distribution, from two independent
-    /// numbers that are evenly distributed in \[0, 1).
-    ///
-    /// 1 − ω·ξ = −ln(1 − x(1 − e^{−2λ}))/λ inverts the distribution of the first number x: without
-    /// cancellation for sharp lobes, and evenly over the sphere for λ = 0. Numbers outside \[0, 1\] are moved to
-    /// its ends, and NaN to 0.
-    #[must_use]
-    pub fn sample(&self, numbers: [f32; 2]) -> Direction {
-        // Zero for NaN.
-        let [x, turn] = numbers.map(|number| if number > 0.0 { number.min(1.0) } else { 0.0 });
-        let (x, sharpness) = (f64::from(x), f64::from(self.sharpness));
-        let height = if sharpness > 1e-9 {
-            -ln_1p_f64(-x * one_minus_exponential(2.0 * sharpness)) / sharpness
-        } else {
-            2.0 * x
-        };
-        let height = height.min(2.0);
-        let radius = sqrt_f64(height * (2.0 - height));
-        let (v, w) = Vector3::from(self.axis).any_orthonormal_pair();
-        let (sine, cosine) = sin_cos(turn * core::f32::consts::TAU);
-        let drawn = Vector3::combine([
-            (1.0 - height, Vector3::from(self.axis).widen()),
-            (radius * f64::from(cosine), v.widen()),
-            (radius * f64::from(sine), w.widen()),
-        ]);
-        direction_along(drawn, drawn.length()).unwrap_or(self.axis)
-    }
-
-    /// The density v(ω)/∫v dω in sr⁻¹ with which [`sample`](Self::sample) draws the unit vector `direction`,
-    /// whatever the amplitude. Zero for NaN.
-    #[must_use]
-    pub fn density(&self, direction: Vec3) -> f32 {
-        let over = 1.0 / solid_angle(f64::from(self.sharpness));
-        let distribution = Self {
-            amplitude: over as f32,
-            ..*self
-        };
-        distribution.value(direction)
-    }
-
     /// The SG as a single lane.
     #[inline(always)]
     pub(crate) fn lanes(&self) -> SphericalGaussians<f32> {
@@ -339,20 +204,6 @@ pub(crate) fn direction_along(vector: Vector3<f64>, length: f64) -> Option<Direc
     (1e-150..=f64::MAX)
         .contains(&length)
         .then(|| Direction::from_unit(Vector3::narrow(vector / length).into()))
-}
-
-/// The axis and the sharpness ‖ξ̄‖/(1 − ‖ξ̄‖) of the SG with the mean direction `mean`, where
-/// `rest` = 1 − ‖ξ̄‖. The axis is +z for a mean of zero.
-pub(crate) fn toksvig(mean: Vector3<f64>, rest: f64) -> (Direction, f32) {
-    let length = mean.length();
-    let most = f64::from(SphericalGaussian::MAX_SHARPNESS);
-    let sharpness = if rest * most > length {
-        length / rest
-    } else {
-        most
-    };
-    let axis = direction_along(mean, length).unwrap_or(Direction::Z);
-    (axis, sharpness as f32)
 }
 
 /// s = λ₁ξ₁ + λ₂ξ₂ and exp(−λ₁λ₂‖ξ₁ − ξ₂‖²/(‖s‖ + λ₁ + λ₂)), for the product of two SGs of unit amplitude.

@@ -58,7 +58,7 @@ impl Camera<Orthographic> {
     /// ```
     /// use stochastic_light_culling::{Camera, Sphere, TileGrid, glam::{Mat4, Vec3}};
     ///
-    /// // 32 units wide and 18 high, from 100 before the camera to 100 behind it: as
+    /// // 32 units wide and 18 high, from 100 in front of the camera to 100 behind it: as
     /// // `Mat4::orthographic_rh(-16.0, 16.0, -9.0, 9.0, -100.0, 100.0)` of glam, or Bevy's.
     /// let mut projection = Mat4::from_scale(Vec3::new(1.0 / 16.0, 1.0 / 9.0, -1.0 / 200.0));
     /// projection.w_axis.z = 0.5;
