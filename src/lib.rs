@@ -347,7 +347,8 @@ pub use lobe::LtcLobe;
 pub use lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Cap, Conductor, ConstantLobe,
     Dielectric, Fresnel, FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, Incidence, LambertLobe,
-    Lobe, MaskingShadowing, NoFresnel, PhongLobe, Schlick, Separable, SphericalGaussian, SpotLobe,
+    Lobe, LobeFamily, MaskingShadowing, NoFresnel, PhongLobe, ReceiverLobe, Schlick, Separable,
+    SphericalGaussian, SpotLobe,
 };
 pub use project::{
     Project, Projected, ProjectedBound, ProjectedEllipsoid, ProjectedHalfSpace, ProjectedSphere,

@@ -15,6 +15,14 @@
 //!
 //! Each is an equality for c = 0, so a bound that is made of them becomes the function itself as the cap closes.
 //!
+//! # The cap of a ball
+//!
+//! The directions from a point to a ball at distance l, of radius ρ, are those within the angle γ of its centre,
+//! sinγ = ρ/l. Their chord is 2 sin ½γ. The cap has the greater 2 tan ½γ = 2ρ/(l + √(l² − ρ²)), because it nests:
+//! let the ball hold another, of angle γ′, and let θ be the angle between both centres. Then θ + γ′ ≤ γ, and since
+//! tan is superadditive, 2 tan ½γ ≥ 2 tan ½θ + 2 tan ½γ′, which is at least the distance 2 sin ½θ of the axes and
+//! the chord of the other together. With sines in place of tangents that is false.
+//!
 //! # Rounding
 //!
 //! All of these quantities are computed with an absolute error of a few u. So the chord is enlarged by
@@ -23,16 +31,16 @@
 use glam::Vec3;
 
 use crate::base::{Direction, Error, number_in};
-use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3, round_down, round_up, sqrt};
+use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3, round_down};
 
 /// Budget for dot products, cross products and differences of directions, in units of u.
 const CHORD_ROUNDINGS: f32 = 32.0;
 /// Budget for the quotient of the sine of a half vector's angle.
 const SINE_ROUNDINGS: u16 = 6;
-/// Budget for the sine of the angle of a sphere.
-const SPHERE_SINE_ROUNDINGS: u16 = 6;
-/// Budget for the chord of a sphere, beside that of its sine.
-const SPHERE_CHORD_ROUNDINGS: u16 = 6;
+/// Budget for the distance of a ball.
+const DISTANCE_ROUNDINGS: u16 = 4;
+/// Budget for the chord of a ball, beside that of its distance.
+const BALL_ROUNDINGS: u16 = 6;
 
 /// A cap of directions: the unit vectors whose distance from an axis is at most a chord.
 ///
@@ -81,28 +89,24 @@ impl Cap {
 
     /// The directions from `apex` to the points of the ball of this `center` and `radius`, rounded outward.
     ///
+    /// The chord is 2 tan ½γ, somewhat more than that of the ball's angle γ; see [nesting](#nesting).
+    ///
     /// All directions if the ball holds the apex, if a number is NaN, and if the square of the distance is outside
     /// the range of `f32`.
+    ///
+    /// # Nesting
+    ///
+    /// If a ball holds another, its chord is at least that of the other and the distance of the two axes together,
+    /// but for rounding.
     #[must_use]
     pub fn of_sphere(apex: Vec3, center: Vec3, radius: f32) -> Self {
         let way = center - apex;
-        let squared = way.length_squared();
-        // The square neither overflows nor loses digits.
-        let in_range = (f32::MIN_POSITIVE..=f32::MAX).contains(&squared);
-        let distance = sqrt(squared);
-        // sinγ, and 2 sin ½γ = sinγ √(2/(1 + cosγ)).
-        let sine = round_up(radius.abs() / distance, SPHERE_SINE_ROUNDINGS);
+        let (cap, _) = Caps::of_balls(way.into(), radius.abs(), 0.0);
         match Direction::new(way) {
-            // False for NaN.
-            Ok(axis) if in_range && sine < 1.0 => {
-                let cosine = sqrt((1.0 - sine) * (1.0 + sine));
-                let chord = sine * sqrt(2.0 / (1.0 + cosine));
-                let chord = round_up(chord, SPHERE_CHORD_ROUNDINGS);
-                Self {
-                    axis,
-                    chord: (chord + CHORD_ROUNDINGS * UNIT_ROUNDOFF).min(2.0),
-                }
-            }
+            Ok(axis) if cap.chord < 2.0 => Self {
+                axis,
+                chord: cap.chord,
+            },
             _ => Self::all(),
         }
     }
@@ -129,13 +133,69 @@ impl Cap {
 }
 
 /// A [`Cap`] in each lane, enlarged for rounding.
-#[derive(Clone, Copy)]
-pub(crate) struct Caps<N> {
+#[derive(Clone, Copy, Debug)]
+pub struct Caps<N> {
+    /// A unit vector, or zero for all directions.
     axis: Vector3<N>,
+    /// At most 2, but for rounding.
     chord: N,
 }
 
 impl<N: Single> Caps<N> {
+    /// The directions along `way` to the points of balls of these radii, with a chord that is greater by `margin` than
+    /// rounding asks for. Then a lower bound of the distance to a point of the ball.
+    ///
+    /// All directions, and zero, if `way` ends in the ball, and if its square is outside the range of `f32`.
+    #[inline(always)]
+    pub(crate) fn of_balls(way: Vector3<N>, radius: N, margin: f32) -> (Self, N) {
+        let squared = way.length_squared();
+        let zero = squared.zero();
+        let length = squared.sqrt();
+        let distance = length * round_down(1.0, DISTANCE_ROUNDINGS);
+        let radius = radius.round_up(DISTANCE_ROUNDINGS);
+        let gap = distance - radius;
+        // False for NaN. The square neither overflows nor loses digits.
+        let is_outside = gap.is_positive()
+            & zero.splat(f32::MIN_POSITIVE).le(squared)
+            & squared.le(zero.splat(f32::MAX));
+        // 2 tan ½γ
+        let tangent = (gap * (distance + radius)).sqrt();
+        let chord = (radius * 2.0 / (distance + tangent)).round_up(BALL_ROUNDINGS);
+        let chord = (chord + CHORD_ROUNDINGS * UNIT_ROUNDOFF + margin).min(zero.splat(2.0));
+        let inverse = zero.splat(1.0) / length;
+        let axis = way * inverse;
+        let [x, y, z, chord, gap] = N::select_all(
+            is_outside,
+            [axis.x, axis.y, axis.z, chord, gap],
+            [zero, zero, zero, zero.splat(2.0), zero],
+        );
+        let axis = Vector3::new(x, y, z);
+        (Self { axis, chord }, gap)
+    }
+
+    /// `value` in each lane.
+    #[inline(always)]
+    pub(crate) fn splat(&self, value: f32) -> N {
+        self.chord.splat(value)
+    }
+
+    /// Applies `function` to the cap of each lane.
+    #[inline(always)]
+    pub(crate) fn per_lane(&self, mut function: impl FnMut(usize, &Cap) -> f32) -> N {
+        let Vector3 { x, y, z } = self.axis;
+        N::per_lane(
+            [x, y, z, self.chord],
+            #[inline(always)]
+            |i, [x, y, z, chord]| {
+                let cap = match Direction::new(Vec3::new(x, y, z)) {
+                    Ok(axis) => Cap { axis, chord },
+                    Err(_) => Cap::all(),
+                };
+                function(i, &cap)
+            },
+        )
+    }
+
     /// The greatest ω·r for a vector `row` = r of any length.
     #[cfg(feature = "ltc")]
     #[inline(always)]
@@ -198,7 +258,7 @@ impl<N: Single> Caps<N> {
 
 /// A ball that holds half vectors, in each lane.
 #[derive(Clone, Copy)]
-pub(crate) struct HalfVectors<N> {
+pub struct HalfVectors<N> {
     /// h
     middle: Vector3<N>,
     /// The least and the greatest length. The latter is positive.

@@ -2,7 +2,7 @@ use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
-use super::{Cap, Lobe, LobeNumbers};
+use super::{Cap, Caps, Lobe, LobeFamily, LobeNumbers, Majorant, ReceiverLobe};
 use crate::num::{Single, Vector3, round_up};
 
 /// A lobe with the same value 1/(4π) sr⁻¹ in every direction: the ordinary point light of engines
@@ -50,4 +50,39 @@ impl Lobe for ConstantLobe {
     ) -> N {
         outgoing.x.splat(Self::PEAK)
     }
+
+    #[inline(always)]
+    fn majorant_in_lanes<'a, N: Single>(
+        _: &LobeNumbers<N>,
+        _: impl Fn(usize) -> Option<&'a Self>,
+        cap: &Caps<N>,
+    ) -> Majorant<N> {
+        constant_majorant(cap)
+    }
+}
+
+/// A receiver that any light of the same radiance lights alike. With this lobe, a choice of lights knows where
+/// receivers are and nothing else.
+impl ReceiverLobe for ConstantLobe {
+    type Family = Self;
+
+    fn family(&self) -> Self {
+        Self
+    }
+}
+
+impl LobeFamily for ConstantLobe {
+    fn union(mut families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
+        families.next()
+    }
+
+    #[inline(always)]
+    fn majorant_in_lanes<N: Single>(&self, cap: &Caps<N>) -> Majorant<N> {
+        constant_majorant(cap)
+    }
+}
+
+#[inline(always)]
+fn constant_majorant<N: Single>(cap: &Caps<N>) -> Majorant<N> {
+    Majorant::exactly(cap.splat(round_up(ConstantLobe::PEAK, 2)))
 }

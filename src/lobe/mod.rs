@@ -7,6 +7,7 @@ mod cap;
 mod conductor;
 mod constant;
 mod dielectric;
+mod family;
 mod fresnel;
 mod gaussian_fit;
 mod ggx;
@@ -32,9 +33,12 @@ pub use anisotropic_ggx::AnisotropicGgx;
 pub use anisotropic_ggx_lobe::AnisotropicGgxLobe;
 pub(crate) use anisotropic_ggx_lobe::{SurfaceAxes, unit};
 pub use cap::Cap;
+pub(crate) use cap::Caps;
 pub use conductor::Conductor;
 pub use constant::ConstantLobe;
 pub use dielectric::Dielectric;
+pub(crate) use family::Majorant;
+pub use family::{LobeFamily, ReceiverLobe};
 pub use fresnel::{Fresnel, FresnelMajorant, NoFresnel, Schlick};
 pub(crate) use gaussian_fit::toksvig;
 pub use ggx::Ggx;
@@ -159,6 +163,23 @@ pub trait Lobe {
             #[inline(always)]
             |i, outgoing| lobe_of(i).map_or(0.0, |lobe| lobe.value(Vec3::from_array(outgoing))),
         )
+    }
+
+    /// Computes the [majorant](Majorant) of one lobe in each lane. `lobe_of` gives that of a lane.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn majorant_in_lanes<'a, N: Single>(
+        _: &LobeNumbers<N>,
+        lobe_of: impl Fn(usize) -> Option<&'a Self>,
+        cap: &Caps<N>,
+    ) -> Majorant<N>
+    where
+        Self: Sized + 'a,
+    {
+        Majorant::exactly(cap.per_lane(
+            #[inline(always)]
+            |i, cap| lobe_of(i).map_or(0.0, |lobe| lobe.maximum_within(cap)),
+        ))
     }
 
     /// Computes in each lane what stands for the mean of the lobe over the SG about `axis` with `sharpness`:

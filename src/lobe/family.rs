@@ -1,0 +1,67 @@
+//! What bounds many lobes at once within a cap of directions.
+//!
+//! A family stands for all the lobes of a tile, or of a block of tiles: axes within a chord of a mean axis, and
+//! ranges of the other numbers. Its majorant is an upper bound of every member towards every direction of a cap.
+//!
+//! # Nesting
+//!
+//! If a family is the [union](LobeFamily::union) of others, and a cap holds another, the greater pair has the
+//! greater majorant, but for rounding. That takes more than nested sets: a chord of the greater must be at least
+//! the distance of the two axes and the chord of the lesser together. So lights that a block of tiles rejects
+//! would be rejected by each of its tiles.
+
+use core::fmt::Debug;
+
+use super::cap::Caps;
+use super::{Cap, Lobe};
+use crate::num::Single;
+
+/// What is known of a lobe, or of many, within a cap of directions, in each lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Majorant<N> {
+    /// An upper bound of the value towards every direction.
+    pub greatest: N,
+    /// An estimate of the value, at most [`greatest`](Self::greatest). Positive where that is.
+    pub typical: N,
+}
+
+impl<N: Single> Majorant<N> {
+    /// The same for both.
+    #[inline(always)]
+    pub fn exactly(value: N) -> Self {
+        Self {
+            greatest: value,
+            typical: value,
+        }
+    }
+}
+
+/// A lobe that receivers may have: many of them have a common bound.
+pub trait ReceiverLobe: Lobe + Clone {
+    /// What stands for many such lobes.
+    type Family: LobeFamily;
+
+    /// The family of this lobe alone.
+    #[must_use]
+    fn family(&self) -> Self::Family;
+}
+
+/// What stands for many lobes, such as those of the receivers in a tile.
+pub trait LobeFamily: Copy + Debug + PartialEq + Send + Sync + 'static {
+    /// The family of all members of `families`. `None` if there are none.
+    ///
+    /// The iterator is walked twice: once for mean axes, once for the chords around them.
+    #[must_use]
+    fn union(families: impl Iterator<Item = Self> + Clone) -> Option<Self>;
+
+    /// Computes the majorant of all members within the cap in each lane.
+    #[doc(hidden)]
+    fn majorant_in_lanes<N: Single>(&self, cap: &Caps<N>) -> Majorant<N>;
+
+    /// An upper bound of the value of every member towards every direction of `cap`, as
+    /// [`Lobe::maximum_within`] is of one lobe.
+    #[must_use]
+    fn greatest_within(&self, cap: &Cap) -> f32 {
+        self.majorant_in_lanes(&cap.lanes()).greatest
+    }
+}
