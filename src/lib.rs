@@ -333,22 +333,22 @@ pub use bound::{
 #[cfg(feature = "cull")]
 pub use cull::{
     BatchBuilder, BlockEstimates, CullCounters, Culler, Estimate, LightBatch, LightLists,
-    PointBlock, RadianceEstimator, Receiver, ReceiverBlock, ShadedLight, ShadedPoint, ShadingBatch,
-    TileDepths,
+    PointBlock, RadianceEstimator, Receiver, ReceiverBlock, ReceiverCuller, ShadedLight,
+    ShadedPoint, ShadingBatch, TileDepths, TileReceivers, WeightedList, WeightedLists,
 };
 #[cfg(feature = "bytemuck")]
 pub use interop::{GpuEllipsoid, GpuSphere};
 pub use light::{
     ClusterSums, DistanceWindow, FilteredSample, FilteredSampling, FrameSeed, MipPyramid, Roulette,
-    Seed, Vpl, Vsgl, Xi, pyramid_len, rank_along_curve,
+    Seed, TileProbability, Vpl, Vsgl, Xi, pyramid_len, rank_along_curve,
 };
 #[cfg(feature = "ltc")]
 pub use lobe::LtcLobe;
 pub use lobe::{
-    AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Cap, Conductor, ConstantLobe,
-    Dielectric, Fresnel, FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, Incidence, LambertLobe,
-    Lobe, LobeFamily, MaskingShadowing, NoFresnel, PhongLobe, ReceiverLobe, Schlick, Separable,
-    SphericalGaussian, SpotLobe,
+    AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Blind, Cap, Conductor,
+    ConstantLobe, Dielectric, Fresnel, FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, Incidence,
+    LambertLobe, Lobe, LobeFamily, MaskingShadowing, NoFresnel, PhongLobe, ReceiverLobe, Schlick,
+    Separable, SphericalGaussian, SpotLobe,
 };
 pub use project::{
     Project, Projected, ProjectedBound, ProjectedEllipsoid, ProjectedHalfSpace, ProjectedSphere,
@@ -357,7 +357,7 @@ pub use project::{
 pub use touch::{BoxTest, TileTest};
 pub use view::{
     AnyCamera, Camera, DepthInterval, Interleave, Orthographic, Perspective, PixelRectangle,
-    Projection, TileGrid, TileRectangle,
+    Projection, ReceiverCluster, TileGrid, TileRectangle,
 };
 
 /// The vectors and matrices of the interface.

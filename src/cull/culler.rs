@@ -250,14 +250,7 @@ pub(super) fn finish(
     lists: &mut LightLists,
 ) -> Result<CullCounters, Error> {
     lists.finish();
-    if u32::try_from(lists.len()).is_err() {
-        lists.reset([0; 2], 0);
-        return Err(Error::Size {
-            quantity: "grid of tiles",
-            value: tiles.size(),
-            valid: "such that all lists together hold less than 2³² lights",
-        });
-    }
+    lists.check_size(tiles.size())?;
     Ok(CullCounters {
         pairs: lists.len() as u64,
         ..counters

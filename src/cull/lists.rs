@@ -5,6 +5,7 @@ use fearless_simd::{Simd, SimdBase};
 
 use super::lanes::LANES;
 use super::tile_depths::Area;
+use crate::base::Error;
 
 /// For each depth interval of each tile, the indices of the lights that may touch it.
 ///
@@ -67,18 +68,24 @@ impl LightLists {
     #[inline]
     #[must_use]
     pub fn of(&self, tile: [u32; 2], interval: u32) -> &[u32] {
+        &self.lights[self.range_of(tile, interval)]
+    }
+
+    /// The range of [`of`](Self::of) in `lights`.
+    #[inline]
+    pub(super) fn range_of(&self, tile: [u32; 2], interval: u32) -> Range<usize> {
         let ([x, y], interval) = (tile.map(|n| n as usize), interval as usize);
         if x >= self.columns || interval >= self.intervals {
-            return &[];
+            return 0..0;
         }
         // Of a row that does not exist the slot may overflow. There is none at the largest number either.
         let slot = y.saturating_mul(self.columns).saturating_add(x);
         let slot = slot.saturating_mul(self.intervals).saturating_add(interval);
-        let [start, end] = self
-            .ranges
-            .get(slot)
-            .map_or([0; 2], |range| range.map(|n| n as usize));
-        &self.lights[start..end]
+        if slot < self.ranges.len() {
+            self.range(slot)
+        } else {
+            0..0
+        }
     }
 
     /// The start and end of each list in [`lights`](Self::lights).
@@ -169,6 +176,20 @@ impl LightLists {
             self.lights.resize(room, 0);
         }
         self.has_grown = false;
+    }
+
+    /// Returns an error, and clears the lists, if they hold too many lights for their ranges. `size` is that of the
+    /// grid of tiles.
+    pub(super) fn check_size(&mut self, size: [u32; 2]) -> Result<(), Error> {
+        if u32::try_from(self.len).is_ok() {
+            return Ok(());
+        }
+        self.reset([0; 2], 0);
+        Err(Error::Size {
+            quantity: "grid of tiles",
+            value: size,
+            valid: "such that all lists together hold less than 2³² lights",
+        })
     }
 
     /// Appends the list of `slot`: the first `len` of `lights`, which is longer than that by a vector.

@@ -49,6 +49,7 @@ mod lanes;
 mod lists;
 #[cfg(feature = "rayon")]
 mod parallel;
+mod receivers;
 mod select;
 mod shading;
 mod tile_depths;
@@ -58,6 +59,7 @@ pub use batch::LightBatch;
 pub use builder::BatchBuilder;
 pub use culler::{CullCounters, Culler};
 pub use lists::LightLists;
+pub use receivers::{ReceiverCuller, TileReceivers, WeightedList, WeightedLists};
 pub use shading::{
     BlockEstimates, Estimate, PointBlock, RadianceEstimator, Receiver, ReceiverBlock, ShadedLight,
     ShadedPoint, ShadingBatch,

@@ -5,6 +5,7 @@ mod curve;
 mod map;
 mod pyramid;
 mod roulette;
+mod tile_probability;
 mod vpl;
 mod vsgl;
 mod window;
@@ -15,6 +16,7 @@ pub use curve::rank_along_curve;
 pub use map::{FilteredSample, FilteredSampling};
 pub use pyramid::{MipPyramid, pyramid_len};
 pub use roulette::Roulette;
+pub use tile_probability::TileProbability;
 pub use vpl::Vpl;
 #[cfg(feature = "cull")]
 pub(crate) use vpl::unit;

@@ -179,6 +179,15 @@ impl<N: Single> Caps<N> {
         self.chord.splat(value)
     }
 
+    /// The opposite directions.
+    #[inline(always)]
+    pub(crate) fn opposite(&self) -> Self {
+        Self {
+            axis: -self.axis,
+            chord: self.chord,
+        }
+    }
+
     /// Applies `function` to the cap of each lane.
     #[inline(always)]
     pub(crate) fn per_lane(&self, mut function: impl FnMut(usize, &Cap) -> f32) -> N {

@@ -65,3 +65,20 @@ pub trait LobeFamily: Copy + Debug + PartialEq + Send + Sync + 'static {
         self.majorant_in_lanes(&cap.lanes()).greatest
     }
 }
+
+/// The family of receivers of which nothing is known but where they are: the value is 1.
+///
+/// With it, the radiance that arrives counts, whatever a surface reflects of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Blind;
+
+impl LobeFamily for Blind {
+    fn union(mut families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
+        families.next()
+    }
+
+    #[inline(always)]
+    fn majorant_in_lanes<N: Single>(&self, cap: &Caps<N>) -> Majorant<N> {
+        Majorant::exactly(cap.splat(1.0))
+    }
+}

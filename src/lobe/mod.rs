@@ -38,7 +38,7 @@ pub use conductor::Conductor;
 pub use constant::ConstantLobe;
 pub use dielectric::Dielectric;
 pub(crate) use family::Majorant;
-pub use family::{LobeFamily, ReceiverLobe};
+pub use family::{Blind, LobeFamily, ReceiverLobe};
 pub use fresnel::{Fresnel, FresnelMajorant, NoFresnel, Schlick};
 pub(crate) use gaussian_fit::toksvig;
 pub use ggx::Ggx;
@@ -178,7 +178,7 @@ pub trait Lobe {
     {
         Majorant::exactly(cap.per_lane(
             #[inline(always)]
-            |i, cap| lobe_of(i).map_or(0.0, |lobe| lobe.maximum_within(cap)),
+            |i, cap| lobe_of(i).map_or(f32::INFINITY, |lobe| lobe.maximum_within(cap)),
         ))
     }
 

@@ -2,9 +2,12 @@
 
 mod box_test;
 mod frustum;
+mod receivers;
 
 pub use box_test::BoxTest;
 pub(crate) use frustum::Frustum;
+#[cfg(feature = "cull")]
+pub(crate) use receivers::LitFrom;
 
 use crate::project::{ProjectedEllipsoid, ProjectedHalfSpace, ProjectedSphere};
 use crate::view::{DepthInterval, Projection, TileRectangle, ViewBounds};

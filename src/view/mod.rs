@@ -8,6 +8,7 @@ mod interleave;
 mod orthographic;
 mod perspective;
 mod projection;
+mod receiver_cluster;
 mod rectangle;
 mod rigid;
 
@@ -23,4 +24,5 @@ pub use interleave::Interleave;
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
 pub use projection::Projection;
+pub use receiver_cluster::ReceiverCluster;
 pub use rectangle::TileRectangle;

@@ -35,7 +35,7 @@ pub struct ShadingBatch<L> {
     /// [`lines_per_light`](Self::lines_per_light) of each light.
     pub(super) lines: Vec<Record>,
     /// The lobes, if they are more than their numbers.
-    pub(super) lobes: Vec<L>,
+    pub(in crate::cull) lobes: Vec<L>,
 }
 
 impl<L: ShadedLight> ShadingBatch<L> {

@@ -17,10 +17,10 @@ pub struct Frame {
 
 /// A light in each lane, without what its lobe has besides numbers.
 pub struct Lights<N> {
-    pub(super) position: Vector3<N>,
-    pub(super) flux: N,
-    pub(super) xi: N,
-    pub(super) numbers: LobeNumbers<N>,
+    pub(in crate::cull) position: Vector3<N>,
+    pub(in crate::cull) flux: N,
+    pub(in crate::cull) xi: N,
+    pub(in crate::cull) numbers: LobeNumbers<N>,
 }
 
 impl<S: Simd> Lights<F32Lanes<S>> {

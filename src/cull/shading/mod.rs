@@ -24,6 +24,7 @@ mod receiver;
 pub use batch::ShadingBatch;
 pub use block::{BlockEstimates, PointBlock};
 pub use estimator::RadianceEstimator;
+pub(super) use kernel::Lights;
 pub use kernel::ShadedLight;
 pub use point::{Estimate, ShadedPoint};
 pub use receiver::{Receiver, ReceiverBlock};

@@ -1,0 +1,199 @@
+//! Lists through blocks and in lanes are those of the scalar test, and hold every light that a receiver accepts.
+
+use fastrand::Rng;
+use stochastic_light_culling::{
+    Blind, ConstantLobe, LightLists, Lobe, LobeFamily, ReceiverCluster, ReceiverCuller, Roulette,
+    ShadingBatch, TileGrid, TileProbability, TileReceivers, Vpl, WeightedLists, glam::Vec3,
+};
+
+use crate::scene::{Pixel, Surfaces, lights};
+
+/// The kinds of receivers: the family of a pixel, and its value towards a light.
+pub struct Receivers<F, V> {
+    family: fn(&Pixel, &mut Rng) -> (F, V),
+    value: fn(&V, Vec3) -> f32,
+}
+
+fn blind() -> Receivers<Blind, ()> {
+    Receivers {
+        family: |_, _| (Blind, ()),
+        value: |(), _| 1.0,
+    }
+}
+
+/// Compares the lists of random scenes. Returns how many pairs were accepted, and how many pairs lists held.
+fn check<L: Lobe + Clone, F: LobeFamily, V>(
+    lobe: fn(&mut Rng) -> L,
+    receivers: &Receivers<F, V>,
+    seed: u64,
+    scenes: u32,
+) -> [u64; 2] {
+    let mut rng = Rng::with_seed(seed);
+    let mut counts = [0; 2];
+    for _ in 0..scenes {
+        let tile_size = [1, 2, 4, 8, 16][rng.usize(..5)];
+        let surfaces = Surfaces::new(&mut rng, tile_size);
+        let grid = surfaces.grid;
+        let intervals = 1 + rng.u32(..2);
+        let delta = 10_f32.powf(-4.0 * rng.f32() - 1.0);
+        let roulette = Roulette::new(delta).expect("positive");
+        let (lights, batch) = lights(&mut rng, 200, lobe);
+        let lobes: Vec<_> = surfaces.pixels.iter().flatten().collect();
+        let lobes: Vec<(F, V)> = lobes
+            .iter()
+            .map(|p| (receivers.family)(p, &mut rng))
+            .collect();
+        // The lobes of the pixels that see something, in their order.
+        let mut lobes = lobes.into_iter();
+        let lobes: Vec<Option<(F, V)>> = surfaces
+            .pixels
+            .iter()
+            .map(|pixel| pixel.as_ref().and_then(|_| lobes.next()))
+            .collect();
+        let columns = grid.image_size()[0];
+        let points = |tile, interval| {
+            let pixels = grid
+                .pixels(tile)
+                .pixels()
+                .map(move |[x, y]| (y * columns + x) as usize);
+            let points =
+                pixels.filter_map(|i| Some((surfaces.pixels[i].as_ref()?, lobes[i].as_ref()?)));
+            points.filter(move |(pixel, _)| intervals == 1 || pixel.interval == interval)
+        };
+        let mut tiles = TileReceivers::new(&grid, intervals).expect("few");
+        tiles.fill(|tile, interval| {
+            let points = points(tile, interval);
+            let scale = 1.0 + (tile[0] % 3) as f32;
+            ReceiverCluster::of(points.map(|(pixel, (family, _))| (pixel.position, *family)))
+                .map(|cluster| cluster.with_delta_scale(scale).expect("in range"))
+        });
+
+        let least = 1e-3;
+        let (mut lists, mut drawn) = (LightLists::new(), WeightedLists::new());
+        let probability = [
+            TileProbability::bound(),
+            TileProbability::root_mean_square(8.0).expect("in range"),
+        ][rng.usize(..2)];
+        for lanes in [4, 8, 16] {
+            let culler = ReceiverCuller::new(&roulette).with_lanes(lanes);
+            let mut culler = culler.with_least_distance_squared(least).expect("positive");
+            let [before, drawn_before] = [lists.clone(), drawn.lists().clone()];
+            let weights = drawn.weights().to_vec();
+            culler.cull(&batch, &tiles, &mut lists).expect("few");
+            culler
+                .draw(probability, &batch, &tiles, &mut drawn)
+                .expect("few");
+            if lanes > 4 {
+                assert!(before == lists && drawn_before == *drawn.lists());
+                assert!(weights == drawn.weights());
+            }
+        }
+
+        for tile in grid.tiles() {
+            for interval in 0..intervals {
+                let list = lists.of(tile, interval);
+                let cluster = tiles.of(tile, interval);
+                let bound = |light: &Vpl<L>| {
+                    cluster.map_or(0.0, |c| c.greatest_radiance(light, &roulette, least))
+                };
+                // Of the scalar test.
+                let expected = (0..).zip(&lights).filter(|(_, (light, xi))| {
+                    let bound = bound(light);
+                    bound > 0.0 && xi.get() <= bound
+                });
+                let expected: Vec<u32> = expected.map(|(light, _)| light).collect();
+                assert_eq!(list, expected, "tile {tile:?}");
+                counts[1] += list.len() as u64;
+
+                // Of brute force.
+                let delta = delta * cluster.map_or(1.0, ReceiverCluster::delta_scale);
+                let roulette = Roulette::new(delta).expect("positive");
+                for (pixel, (_, lobe)) in points(tile, interval) {
+                    for (light, (vpl, xi)) in (0..).zip(&lights) {
+                        let (direction, squared) = vpl.direction_to(pixel.position);
+                        let reflected =
+                            vpl.radiant_intensity(direction) * (receivers.value)(lobe, -direction);
+                        if roulette.accepts(reflected, squared.max(least), *xi) {
+                            counts[0] += 1;
+                            assert!(list.contains(&light), "light {light}, tile {tile:?}");
+                        }
+                    }
+                }
+
+                // A drawn light is listed, and its weight is at least 1 and that of the bound.
+                let drawn = drawn.of(tile, interval);
+                assert_eq!(drawn.lights.len(), drawn.weights.len());
+                for (light, weight) in drawn.lights.iter().zip(drawn.weights) {
+                    let (light, xi) = &lights[*light as usize];
+                    let least = (1.0 / bound(light)).max(1.0);
+                    assert!(*weight >= least * 0.99999, "{weight} {least}");
+                    assert!(xi.get() <= 1.00001 / weight);
+                }
+            }
+        }
+    }
+    counts
+}
+
+#[test]
+fn blind_lists_are_those_of_the_scalar_test() {
+    let [accepted, listed] = check(|_| ConstantLobe, &blind(), 1, 40);
+    println!("{accepted} accepted, {listed} listed");
+    assert!(accepted > 50_000);
+}
+
+#[test]
+fn a_single_tile_and_empty_tiles_have_their_lists() {
+    let mut rng = Rng::with_seed(3);
+    let (_, batch) = lights(&mut rng, 50, |_| ConstantLobe);
+    let roulette = Roulette::new(1e-6).expect("positive");
+    let mut culler = ReceiverCuller::new(&roulette);
+    for (size, intervals) in [([1, 1], 1), ([1, 1], 3), ([5, 1], 1), ([1, 7], 2)] {
+        let grid = TileGrid::new(size, 1).expect("positive");
+        let mut tiles = TileReceivers::new(&grid, intervals).expect("few");
+        let mut lists = LightLists::new();
+        culler.cull(&batch, &tiles, &mut lists).expect("few");
+        assert!(lists.is_empty() && tiles.of([0; 2], 0).is_none());
+        let last = (size.map(|n| n - 1), intervals - 1);
+        tiles.fill(|tile, interval| {
+            let is_last = (tile, interval) == last;
+            let points = is_last.then_some((Vec3::splat(0.5), Blind));
+            ReceiverCluster::of(points.into_iter())
+        });
+        culler.cull(&batch, &tiles, &mut lists).expect("few");
+        assert!(!lists.is_empty());
+        assert_eq!(lists.of(last.0, last.1), lists.lights());
+        // No lights.
+        let none = ShadingBatch::<ConstantLobe>::new();
+        culler.cull(&none, &tiles, &mut lists).expect("few");
+        assert!(lists.is_empty());
+    }
+    assert!(TileReceivers::<Blind>::new(&TileGrid::new([9, 9], 1).expect("positive"), 0).is_err());
+}
+
+#[test]
+fn receivers_that_are_nowhere_need_no_light() {
+    let positions = [
+        Vec3::NAN,
+        Vec3::INFINITY,
+        Vec3::new(1.0, f32::NEG_INFINITY, 0.0),
+    ];
+    assert!(ReceiverCluster::of(positions.iter().map(|p| (*p, Blind))).is_none());
+    let positions = [Vec3::NAN, Vec3::ONE];
+    let cluster = ReceiverCluster::of(positions.iter().map(|p| (*p, Blind)));
+    assert_eq!(cluster.map(|cluster| cluster.center()), Some(Vec3::ONE));
+    let far = [Vec3::splat(f32::MAX), Vec3::splat(f32::MIN)];
+    let cluster = ReceiverCluster::of(far.iter().map(|p| (*p, Blind))).expect("finite");
+    assert_eq!(cluster.radius(), f32::INFINITY);
+    for scale in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        assert!(cluster.with_delta_scale(scale).is_err());
+    }
+    // Whatever the light, it may light them.
+    let mut rng = Rng::with_seed(5);
+    let (lights, _) = lights(&mut rng, 50, |_| ConstantLobe);
+    let roulette = Roulette::new(1.0).expect("positive");
+    for (light, _) in lights {
+        let bound = cluster.greatest_radiance(&light, &roulette, 0.0);
+        assert!(bound == f32::INFINITY || light.flux() == 0.0, "{bound}");
+    }
+}

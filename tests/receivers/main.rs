@@ -1,0 +1,5 @@
+//! Culling against the receivers of tiles.
+#![cfg(feature = "cull")]
+
+mod lists;
+mod scene;
