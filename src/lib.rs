@@ -260,6 +260,7 @@
 //!   grids, depth intervals and interleaving, most under the names of the constructors' arguments. Values
 //!   are restored bit for bit. Deserialization goes through the constructors and returns their errors.
 //!   Bounds, projected shapes, batches and lists follow from these and are not serialized.
+//! - `wgsl`: the steps as text in WGSL, for shaders ([`wgsl`]).
 //! - `bytemuck`: `GpuEllipsoid` and `GpuSphere`, projected shapes as records that a shader can read. The two
 //!   arrays of `LightLists` can be uploaded unchanged.
 //!
@@ -336,6 +337,8 @@ pub use cull::{
     PointBlock, RadianceEstimator, Receiver, ReceiverBlock, ReceiverCuller, ShadedLight,
     ShadedPoint, ShadingBatch, TileDepths, TileReceivers, WeightedList, WeightedLists,
 };
+#[cfg(feature = "wgsl")]
+pub use interop::wgsl;
 #[cfg(feature = "bytemuck")]
 pub use interop::{GpuEllipsoid, GpuSphere};
 pub use light::{

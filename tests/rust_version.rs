@@ -11,7 +11,7 @@ use serde_json::Value;
 /// Features, and the Rust version that the newest of their dependencies needs, if that is newer than the crate's own.
 const STATED: [(&str, Option<[u32; 2]>); 4] = [
     ("std", None),
-    ("libm,ltc,serde,bytemuck", None),
+    ("libm,ltc,serde,bytemuck,wgsl", None),
     ("libm,cull", Some([1, 89])),
     ("rayon", Some([1, 89])),
 ];

@@ -46,3 +46,5 @@ pub(crate) use sphere::Spheres;
 pub use spheroid::Spheroid;
 pub(crate) use spheroid::Spheroids;
 pub use strategy::{BoundStrategy, Bounded, Focal, OwnBound, Paper, Tight, Triaxial};
+#[cfg(feature = "wgsl")]
+pub(crate) use table::TABLE;

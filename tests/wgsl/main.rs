@@ -1,0 +1,5 @@
+//! The text of the shaders: that it is valid, that its numbers are those of the documentation, and that it loses no light
+//! however badly WGSL allows its operations to be done.
+#![cfg(feature = "wgsl")]
+
+mod valid;
