@@ -1,5 +1,4 @@
 use crate::base::{Error, number_in};
-use crate::lobe::Majorant;
 use crate::num::{Real, Single};
 
 /// The probability p_T with which a light is drawn for all receivers of a tile at once.
@@ -28,8 +27,11 @@ impl TileProbability {
         Self { most: 1.0 }
     }
 
-    /// p_T = min(1, max(√(ĉ c̄), ĉ/κ)/δ) for the upper bound ĉ and a typical value c̄ of c in the tile, and
-    /// `most` = κ: no estimate exceeds max(c, κδ). Fewer lights are drawn than by the bound.
+    /// p_T = min(1, max(c_rms, ĉ/κ)/δ) for the upper bound ĉ of c, an estimate c_rms of its root mean square over the
+    /// tile, and `most` = κ: no estimate exceeds max(c, κδ). Fewer lights are drawn than by the bound.
+    ///
+    /// At receivers of radiance c the variance is the mean of c²(1/p_T − 1). For a given number of lights it is least
+    /// where p_T is in proportion to the root of the mean of c².
     ///
     /// # Errors
     ///
@@ -39,7 +41,7 @@ impl TileProbability {
         Ok(Self { most })
     }
 
-    /// p_T for the upper bound `greatest` = ĉ/δ and the typical value `typical` = c̄/δ ≤ ĉ/δ.
+    /// p_T for the upper bound `greatest` = ĉ/δ and the mean square `mean_square` = c_rms²/δ² ≤ ĉ²/δ².
     ///
     /// Zero if ĉ is zero or NaN, else positive. 1 for infinite ĉ.
     ///
@@ -47,21 +49,19 @@ impl TileProbability {
     /// use stochastic_light_culling::TileProbability;
     ///
     /// assert_eq!(TileProbability::bound().probability(0.5, 0.01), 0.5);
-    /// let mean = TileProbability::default().probability(0.5, 0.02);
-    /// assert!((mean - 0.1).abs() < 1e-7);
+    /// assert_eq!(TileProbability::default().probability(0.5, 0.0625), 0.25);
+    /// assert_eq!(TileProbability::default().probability(0.5, 0.0), 0.0625);
     /// ```
     #[must_use]
-    pub fn probability(self, greatest: f32, typical: f32) -> f32 {
-        self.of(Majorant { greatest, typical })
+    pub fn probability(self, greatest: f32, mean_square: f32) -> f32 {
+        self.in_lanes(greatest, mean_square)
     }
 
     /// p_T in each lane.
     #[inline(always)]
-    pub(crate) fn of<N: Single>(self, radiance_over_delta: Majorant<N>) -> N {
-        let Majorant { greatest, typical } = radiance_over_delta;
-        // The roots apart, since the product may underflow.
-        let mean = greatest.sqrt() * typical.sqrt();
-        let probability = Real::max(mean, greatest * (1.0 / self.most));
+    pub(crate) fn in_lanes<N: Single>(self, greatest: N, mean_square: N) -> N {
+        // The first is NaN where an infinite bound meets a mean of zero.
+        let probability = Real::max(mean_square.sqrt(), greatest * (1.0 / self.most));
         // The weight of a lesser one would be infinite.
         let least = greatest.splat(f32::MIN_POSITIVE);
         let probability = Real::max(probability, least).min(greatest.splat(1.0));

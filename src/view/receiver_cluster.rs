@@ -28,6 +28,7 @@ pub struct ReceiverCluster<F> {
     family: F,
     /// δ of these receivers over that of the frame.
     delta_scale: f32,
+    len: u32,
     /// How often clusters have been merged to this one.
     merges: u16,
 }
@@ -41,9 +42,10 @@ impl<F: LobeFamily> ReceiverCluster<F> {
     pub fn of(receivers: impl Iterator<Item = (Vec3, F)> + Clone) -> Option<Self> {
         let receivers = receivers.filter(|(position, _)| position.is_finite());
         let family = F::union(receivers.clone().map(|(_, family)| family))?;
-        let (mut min, mut max) = (Vec3::MAX, Vec3::MIN);
+        let (mut min, mut max, mut len) = (Vec3::MAX, Vec3::MIN, 0_u32);
         for (position, _) in receivers.clone() {
             (min, max) = (min.min(position), max.max(position));
+            len = len.saturating_add(1);
         }
         let center = min.midpoint(max);
         let squared = receivers.map(|(position, _)| center.distance_squared(position));
@@ -54,6 +56,7 @@ impl<F: LobeFamily> ReceiverCluster<F> {
             radius: enlarged(radius, center),
             family,
             delta_scale: 1.0,
+            len,
             merges: 0,
         })
     }
@@ -65,11 +68,12 @@ impl<F: LobeFamily> ReceiverCluster<F> {
     pub fn union(clusters: impl Iterator<Item = Self> + Clone) -> Option<Self> {
         let family = F::union(clusters.clone().map(|cluster| cluster.family))?;
         let (mut min, mut max) = (Vec3::MAX, Vec3::MIN);
-        let (mut delta_scale, mut merges) = (f32::MAX, 0);
+        let (mut delta_scale, mut len, mut merges) = (f32::MAX, 0_u32, 0);
         for cluster in clusters.clone() {
             min = min.min(cluster.center - cluster.radius);
             max = max.max(cluster.center + cluster.radius);
             delta_scale = delta_scale.min(cluster.delta_scale);
+            len = len.saturating_add(cluster.len);
             merges = merges.max(cluster.merges);
         }
         let center = min.midpoint(max);
@@ -85,6 +89,7 @@ impl<F: LobeFamily> ReceiverCluster<F> {
             radius: enlarged(radius, center),
             family,
             delta_scale,
+            len,
             merges: merges + 1,
         })
     }
@@ -126,6 +131,13 @@ impl<F: LobeFamily> ReceiverCluster<F> {
     #[must_use]
     pub fn delta_scale(&self) -> f32 {
         self.delta_scale
+    }
+
+    /// The number of receivers, at least 1.
+    #[expect(clippy::len_without_is_empty, reason = "it is never empty")]
+    #[must_use]
+    pub fn len(&self) -> u32 {
+        self.len
     }
 
     /// How often clusters have been merged to this one: the number of steps in the longest chain.

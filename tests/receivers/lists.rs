@@ -51,7 +51,7 @@ fn check<L: Lobe + Clone, F: LobeFamily, V>(
             .map(|pixel| pixel.as_ref().and_then(|_| lobes.next()))
             .collect();
         let columns = grid.image_size()[0];
-        let points = |tile, interval| {
+        let points = |grid: TileGrid, tile, interval| {
             let pixels = grid
                 .pixels(tile)
                 .pixels()
@@ -60,10 +60,12 @@ fn check<L: Lobe + Clone, F: LobeFamily, V>(
                 pixels.filter_map(|i| Some((surfaces.pixels[i].as_ref()?, lobes[i].as_ref()?)));
             points.filter(move |(pixel, _)| intervals == 1 || pixel.interval == interval)
         };
-        let mut tiles = TileReceivers::new(&grid, intervals).expect("few");
-        tiles.fill(|tile, interval| {
-            let points = points(tile, interval);
-            let scale = 1.0 + (tile[0] % 3) as f32;
+        let parts = [1, tile_size.min(2), tile_size][rng.usize(..3)];
+        let mut tiles = TileReceivers::new(&grid, parts, intervals).expect("few");
+        let parts_grid = tiles.parts_grid();
+        tiles.fill(|part, interval| {
+            let points = points(parts_grid, part, interval);
+            let scale = 1.0 + (part[0] / parts % 3) as f32;
             ReceiverCluster::of(points.map(|(pixel, (family, _))| (pixel.position, *family)))
                 .map(|cluster| cluster.with_delta_scale(scale).expect("in range"))
         });
@@ -94,7 +96,7 @@ fn check<L: Lobe + Clone, F: LobeFamily, V>(
                 let list = lists.of(tile, interval);
                 let cluster = tiles.of(tile, interval);
                 let bound = |light: &Vpl<L>| {
-                    cluster.map_or(0.0, |c| c.greatest_radiance(light, &roulette, least))
+                    tiles.greatest_radiance(tile, interval, light, &roulette, least)
                 };
                 // Of the scalar test.
                 let expected = (0..).zip(&lights).filter(|(_, (light, xi))| {
@@ -108,7 +110,7 @@ fn check<L: Lobe + Clone, F: LobeFamily, V>(
                 // Of brute force.
                 let delta = delta * cluster.map_or(1.0, ReceiverCluster::delta_scale);
                 let roulette = Roulette::new(delta).expect("positive");
-                for (pixel, (_, lobe)) in points(tile, interval) {
+                for (pixel, (_, lobe)) in points(grid, tile, interval) {
                     for (light, (vpl, xi)) in (0..).zip(&lights) {
                         let (direction, squared) = vpl.direction_to(pixel.position);
                         let reflected =
@@ -150,7 +152,7 @@ fn a_single_tile_and_empty_tiles_have_their_lists() {
     let mut culler = ReceiverCuller::new(&roulette);
     for (size, intervals) in [([1, 1], 1), ([1, 1], 3), ([5, 1], 1), ([1, 7], 2)] {
         let grid = TileGrid::new(size, 1).expect("positive");
-        let mut tiles = TileReceivers::new(&grid, intervals).expect("few");
+        let mut tiles = TileReceivers::new(&grid, 1, intervals).expect("few");
         let mut lists = LightLists::new();
         culler.cull(&batch, &tiles, &mut lists).expect("few");
         assert!(lists.is_empty() && tiles.of([0; 2], 0).is_none());
@@ -168,7 +170,13 @@ fn a_single_tile_and_empty_tiles_have_their_lists() {
         culler.cull(&none, &tiles, &mut lists).expect("few");
         assert!(lists.is_empty());
     }
-    assert!(TileReceivers::<Blind>::new(&TileGrid::new([9, 9], 1).expect("positive"), 0).is_err());
+    for parts in [0, 3, 5, u32::MAX] {
+        let grid = TileGrid::new([9, 9], 4).expect("positive");
+        assert!(TileReceivers::<Blind>::new(&grid, parts, 1).is_err());
+    }
+    assert!(
+        TileReceivers::<Blind>::new(&TileGrid::new([9, 9], 4).expect("positive"), 1, 0).is_err()
+    );
 }
 
 #[test]

@@ -4,7 +4,7 @@ use fearless_simd::{Level, dispatch};
 
 use super::lists::WeightedLists;
 use super::tiles::TileReceivers;
-use super::walk::{MayBeAccepted, PartLists, Rule, Scene};
+use super::walk::{MayBeAccepted, PieceLists, Rule, Scene};
 use crate::base::{Error, number_in};
 use crate::cull::culler::{at_most, widest};
 use crate::cull::{LightLists, ShadingBatch};
@@ -32,7 +32,7 @@ use crate::lobe::{Lobe, LobeFamily};
 ///
 /// // A floor of 64×64 positions, and a hundred lamps above it.
 /// let grid = TileGrid::new([64, 64], 16)?;
-/// let mut tiles = TileReceivers::new(&grid, 1)?;
+/// let mut tiles = TileReceivers::new(&grid, 1, 1)?;
 /// tiles.fill(|tile, _| {
 ///     let pixels = grid.pixels(tile).pixels();
 ///     ReceiverCluster::of(pixels.map(|[x, y]| (Vec3::new(x as f32, y as f32, 0.0), Blind)))
@@ -58,8 +58,8 @@ pub struct ReceiverCuller {
     level: Level,
     /// 0, 1, 2 and so on.
     lights: Vec<u32>,
-    /// One for each level of blocks.
-    scratch: Vec<PartLists>,
+    /// One for the parts of a tile, and one for each level of blocks.
+    scratch: Vec<PieceLists>,
     pair_tests: u64,
 }
 
@@ -109,7 +109,7 @@ impl ReceiverCuller {
     }
 
     /// Fills `lists` with the lights that a receiver of each tile may accept: those for which
-    /// [`greatest_radiance`](crate::ReceiverCluster::greatest_radiance) is positive and at least ξ.
+    /// [`greatest_radiance`](TileReceivers::greatest_radiance) is positive and at least ξ.
     ///
     /// # Errors
     ///
@@ -153,9 +153,9 @@ impl ReceiverCuller {
         self.pair_tests = 0;
         self.lights
             .extend(self.lights.len() as u32..lights.len() as u32);
-        let steps = tiles.depth() - 1;
+        let steps = tiles.levels_of_blocks() + 1;
         self.scratch
-            .resize_with(steps.max(self.scratch.len()), PartLists::default);
+            .resize_with(steps.max(self.scratch.len()), PieceLists::default);
         let scene = Scene {
             lights,
             tiles,

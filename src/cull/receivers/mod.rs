@@ -8,8 +8,8 @@
 //!
 //! # No light is lost
 //!
-//! Lists are those of the scalar [`greatest_radiance`](crate::ReceiverCluster::greatest_radiance) of each tile,
-//! since that of a block is at least as great: see `touch::receivers`.
+//! Lists are those of the scalar [`greatest_radiance`](TileReceivers::greatest_radiance) of each tile, since that of
+//! a block is at least as great: see `touch::receivers`.
 
 mod culler;
 mod lists;

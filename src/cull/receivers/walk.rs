@@ -21,7 +21,7 @@ pub(super) trait Rule: Copy {
     const WEIGHS: bool;
 
     /// Lights whose ξ is at most this are in the list.
-    fn probability<N: Single>(self, radiance_over_delta: Majorant<N>) -> N;
+    fn probability<N: Single>(self, radiance: &TileRadiance<N>) -> N;
 }
 
 /// All lights that a receiver may accept.
@@ -32,8 +32,8 @@ impl Rule for MayBeAccepted {
     const WEIGHS: bool = false;
 
     #[inline(always)]
-    fn probability<N: Single>(self, radiance_over_delta: Majorant<N>) -> N {
-        radiance_over_delta.greatest
+    fn probability<N: Single>(self, radiance: &TileRadiance<N>) -> N {
+        radiance.greatest
     }
 }
 
@@ -41,9 +41,18 @@ impl Rule for TileProbability {
     const WEIGHS: bool = true;
 
     #[inline(always)]
-    fn probability<N: Single>(self, radiance_over_delta: Majorant<N>) -> N {
-        self.of(radiance_over_delta)
+    fn probability<N: Single>(self, radiance: &TileRadiance<N>) -> N {
+        self.in_lanes(radiance.greatest, radiance.mean_square)
     }
+}
+
+/// c/δ of a light in each lane, over the receivers of a tile.
+#[derive(Clone, Copy)]
+pub(super) struct TileRadiance<N> {
+    /// An upper bound.
+    greatest: N,
+    /// An estimate of the mean of its square.
+    mean_square: N,
 }
 
 /// The lights, the tiles, and how lights are chosen.
@@ -55,19 +64,19 @@ pub(super) struct Scene<'a, L, F, R> {
     pub rule: R,
 }
 
-/// The lists of the parts of a node.
+/// The lists of the pieces of a node.
 #[derive(Clone, Debug, Default)]
-pub(super) struct PartLists {
-    /// The lights of each part, all with the same room.
+pub(super) struct PieceLists {
+    /// The lights of each piece, all with the same room.
     lights: Vec<u32>,
     weights: Vec<f32>,
     lens: Vec<usize>,
-    /// The parts.
+    /// The pieces.
     nodes: Vec<Node>,
     room: usize,
 }
 
-impl PartLists {
+impl PieceLists {
     /// Makes room for lists of `len` lights, and for a vector after them.
     fn begin(&mut self, nodes: impl Iterator<Item = Node>, len: usize, weighs: bool) {
         self.nodes.clear();
@@ -81,58 +90,84 @@ impl PartLists {
             grow(&mut self.weights, numbers, 0.0);
         }
     }
+
+    /// Appends the list of a piece, a tile.
+    fn append_to<S: Simd>(&self, simd: S, piece: usize, output: &mut WeightedLists, weighs: bool) {
+        let (first, len) = (piece * self.room, self.lens[piece]);
+        let lights = &self.lights[first..][..len + LANES];
+        let weights = if weighs {
+            &self.weights[first..][..len]
+        } else {
+            &[]
+        };
+        output.append(simd, self.nodes[piece].index, lights, len, weights);
+    }
 }
 
 impl<L: Lobe, F: LobeFamily, R: Rule> Scene<'_, L, F, R> {
-    /// Writes the lists of all tiles of `node` for these of the lights. `scratch` has one element for each level below.
+    /// Writes the lists of all tiles of `node` for these of the lights. `scratch` has one element for each level of
+    /// blocks from that of the node down, after one for the parts of a tile.
     pub fn walk<S: Simd>(
         &self,
         simd: S,
         node: Node,
         lights: &[u32],
-        scratch: &mut [PartLists],
+        scratch: &mut [PieceLists],
         output: &mut WeightedLists,
         pair_tests: &mut u64,
     ) {
         let Some((own, scratch)) = scratch.split_last_mut() else {
             return;
         };
-        own.begin(self.tiles.parts(node), lights.len(), R::WEIGHS);
+        own.begin(self.tiles.pieces(node), lights.len(), R::WEIGHS);
         *pair_tests += (own.nodes.len() * lights.len()) as u64;
-        let are_tiles = node.level == 1;
+        let level_of_tiles = self.tiles.level_of_tiles();
+        let are_tiles = node.level == level_of_tiles + 1;
+        let are_divided = level_of_tiles > 0;
         simd.vectorize(
             #[inline(always)]
             || {
-                if are_tiles {
-                    self.choose(simd, lights, own, self.rule);
+                if are_tiles && !are_divided {
+                    self.choose::<_, _, false>(simd, lights, own, self.rule);
                 } else {
-                    self.choose(simd, lights, own, MayBeAccepted);
+                    self.choose::<_, _, false>(simd, lights, own, MayBeAccepted);
                 }
             },
         );
-        for (part, node) in own.nodes.iter().enumerate() {
-            let (first, len) = (part * own.room, own.lens[part]);
-            let lights = &own.lights[first..][..len + LANES];
+        for (piece, node) in own.nodes.iter().enumerate() {
+            let len = own.lens[piece];
+            let lights = &own.lights[piece * own.room..][..len];
             if len == 0 {
                 continue;
             }
-            if are_tiles {
-                let weights = if R::WEIGHS {
-                    &own.weights[first..][..len]
-                } else {
-                    &[]
-                };
-                output.append(simd, node.index, lights, len, weights);
+            if !are_tiles {
+                self.walk(simd, *node, lights, scratch, output, pair_tests);
+            } else if are_divided {
+                let refined = &mut scratch[0];
+                refined.begin([*node].into_iter(), len, R::WEIGHS);
+                *pair_tests += (self.tiles.undivided(*node).count() * len) as u64;
+                simd.vectorize(
+                    #[inline(always)]
+                    || self.choose::<_, _, true>(simd, lights, refined, self.rule),
+                );
+                refined.append_to(simd, 0, output, R::WEIGHS);
             } else {
-                self.walk(simd, *node, &lights[..len], scratch, output, pair_tests);
+                own.append_to(simd, piece, output, R::WEIGHS);
             }
         }
     }
 
-    /// Writes to the list of each part those of the lights that `rule` chooses.
+    /// Writes to the list of each piece those of the lights that `rule` chooses: by its own cluster, or by
+    /// those of its parts.
     #[inline(always)]
-    fn choose<S: Simd, Q: Rule>(&self, simd: S, lights: &[u32], lists: &mut PartLists, rule: Q) {
-        let PartLists {
+    fn choose<S: Simd, Q: Rule, const BY_PARTS: bool>(
+        &self,
+        simd: S,
+        lights: &[u32],
+        lists: &mut PieceLists,
+        rule: Q,
+    ) {
+        let PieceLists {
             lights: out,
             weights,
             lens,
@@ -151,32 +186,56 @@ impl<L: Lobe, F: LobeFamily, R: Rule> Scene<'_, L, F, R> {
                 lobe_of: |lane: usize| self.lights.lobes.get(indices[lane] as usize),
             };
             let indices = S::u32s::from_slice(simd, &indices[..S::u32s::LEN]);
-            for (part, node) in nodes.iter().enumerate() {
-                let Some(cluster) = self.tiles.cluster(*node) else {
-                    continue;
+            for (piece, node) in nodes.iter().enumerate() {
+                let radiance = if BY_PARTS {
+                    self.radiance(self.tiles.undivided(*node), &light)
+                } else {
+                    self.radiance(self.tiles.cluster(*node).into_iter(), &light)
                 };
-                let probability = rule.probability(self.radiance_over_delta(cluster, &light));
+                let first = piece * *room + lens[piece];
+                let probability = rule.probability(&radiance);
                 let chosen = filled & probability.is_positive() & gathered.xi.le(probability);
-                let first = part * *room + lens[part];
                 if Q::WEIGHS {
                     let weight = probability.splat(1.0) / probability;
                     compress::<S>(weight, chosen)
                         .store_slice(&mut weights[first..][..S::f32s::LEN]);
                 }
-                lens[part] += write_chosen::<S>(indices, chosen, &mut out[first..]);
+                lens[piece] += write_chosen::<S>(indices, chosen, &mut out[first..]);
             }
         }
     }
-
+    /// c/δ of the light in each lane over the receivers of all `clusters`.
     #[inline(always)]
-    fn radiance_over_delta<'l, N: Single>(
+    fn radiance<'c, 'l, N: Single>(
         &self,
-        cluster: &ReceiverCluster<F>,
+        clusters: impl Iterator<Item = &'c ReceiverCluster<F>>,
         light: &LitFrom<N, impl Fn(usize) -> Option<&'l L>>,
-    ) -> Majorant<N>
+    ) -> TileRadiance<N>
     where
         L: 'l,
     {
-        cluster.radiance_over_delta(light, &self.roulette, self.least_distance_squared)
+        let (mut radiance, mut receivers) = (TileRadiance::none(light.flux), 0.0);
+        for cluster in clusters {
+            let Majorant { greatest, typical } =
+                cluster.radiance_over_delta(light, &self.roulette, self.least_distance_squared);
+            let count = cluster.len() as f32;
+            receivers += count;
+            radiance.greatest = Real::max(greatest, radiance.greatest);
+            radiance.mean_square = greatest * typical * count + radiance.mean_square;
+        }
+        TileRadiance {
+            mean_square: radiance.mean_square * (1.0 / receivers),
+            ..radiance
+        }
+    }
+}
+
+impl<N: Single> TileRadiance<N> {
+    #[inline(always)]
+    fn none(like: N) -> Self {
+        Self {
+            greatest: like.zero(),
+            mean_square: like.zero(),
+        }
     }
 }
