@@ -349,9 +349,9 @@ pub use light::{
 pub use lobe::LtcLobe;
 pub use lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Blind, Cap, Conductor,
-    ConstantLobe, Dielectric, Fresnel, FresnelMajorant, Ggx, GgxLobe, HeightCorrelated, Incidence,
-    LambertLobe, Lobe, LobeFamily, MaskingShadowing, NoFresnel, PhongLobe, ReceiverLobe, Schlick,
-    Separable, SphericalGaussian, SpotLobe,
+    ConstantLobe, Dielectric, Fresnel, FresnelMajorant, Ggx, GgxFamily, GgxLobe, HeightCorrelated,
+    Incidence, LambertFamily, LambertLobe, Lobe, LobeFamily, MaskingShadowing, NoFresnel,
+    PhongLobe, ReceiverLobe, Schlick, Separable, SphericalGaussian, SpotLobe,
 };
 pub use project::{
     Project, Projected, ProjectedBound, ProjectedEllipsoid, ProjectedHalfSpace, ProjectedSphere,

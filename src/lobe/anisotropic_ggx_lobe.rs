@@ -1,11 +1,12 @@
 use glam::Vec3;
 
 use super::anisotropic_ggx::{anisotropic_masking_root, anisotropic_ndf, ndf_of_scaled_sine};
-use super::cap::Caps;
+use super::fresnel::quasi_convex_maximum;
 use super::ggx_lobes::{GgxLobes, reflectance};
+use super::ggx_majorant::GgxMembers;
 use super::{
-    AnisotropicGgx, Cap, FIRST_NUMBERS, Fresnel, GgxLobe, HeightCorrelated, Incidence, Lobe,
-    LobeNumbers, MaskingShadowing, NoFresnel, Separable,
+    AnisotropicGgx, Cap, Caps, FIRST_NUMBERS, Fresnel, GgxLobe, HeightCorrelated, Incidence, Lobe,
+    LobeNumbers, Majorant, MaskingShadowing, NoFresnel, Separable,
 };
 use crate::base::{Direction, Error};
 use crate::num::{Matrix3, Real, Single, Vector3};
@@ -228,17 +229,18 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
         )
     }
 
-    /// Needs of F that it is quasi-convex, and of G2 that it grows with μ_o and falls with the root of ω_o.
+    /// Needs of F that it is quasi-convex, and of G2 what [`MaskingShadowing`] says.
     #[inline]
     fn maximum_within(&self, cap: &Cap) -> f32 {
-        anisotropic_maximum_within::<f32, G>(
+        let majorant = anisotropic_majorant::<f32, G>(
             &self.at_any_azimuth.lanes(),
             self.ggx.roughness(),
             self.to_surface_frame(),
             #[inline(always)]
             |cosine| self.fresnel().reflectance(cosine),
             &cap.lanes(),
-        )
+        );
+        majorant.greatest
     }
 
     fn horizon_normal(&self) -> Option<Direction> {
@@ -321,20 +323,21 @@ pub(super) fn anisotropic_value<N: Single, G: MaskingShadowing>(
     )
 }
 
-/// An upper bound of [`anisotropic_value`] towards all directions of a cap.
+/// The majorant of [`anisotropic_value`] within a cap.
 ///
 /// The root √(α_x²x² + α_y²y² + z²) is least where each coordinate is.
 #[inline(always)]
-fn anisotropic_maximum_within<N: Single, G: MaskingShadowing>(
+fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
     at_any_azimuth: &GgxLobes<N>,
     roughness: [N; 2],
     to_surface_frame: Matrix3<N>,
     reflectance: impl Fn(N) -> N,
     cap: &Caps<N>,
-) -> N {
-    at_any_azimuth.maximum_within_with::<G>(
-        reflectance,
-        cap,
+) -> Majorant<N> {
+    let members = GgxMembers::one(at_any_azimuth);
+    members.majorant::<G>(
+        #[inline(always)]
+        |cosines| quasi_convex_maximum(&reflectance, cosines),
         #[inline(always)]
         |half_vectors| {
             let factors = roughness.map(
@@ -342,7 +345,13 @@ fn anisotropic_maximum_within<N: Single, G: MaskingShadowing>(
                 |alpha| (alpha.one_minus() * (alpha + 1.0)).sqrt() / alpha,
             );
             let sine = half_vectors.least_scaled_sine(&to_surface_frame, factors);
-            ndf_of_scaled_sine(roughness, sine)
+            let greatest = ndf_of_scaled_sine(roughness, sine);
+            let filtered = roughness.map(
+                #[inline(always)]
+                |alpha| members.filtered(alpha * alpha, half_vectors).sqrt(),
+            );
+            let typical = anisotropic_ndf(filtered, to_surface_frame * half_vectors.middle());
+            Majorant { greatest, typical }
         },
         #[inline(always)]
         |_| {
@@ -355,5 +364,6 @@ fn anisotropic_maximum_within<N: Single, G: MaskingShadowing>(
             let least = Vector3::new(x, y, cap.least_cosine(at_any_azimuth.normal));
             anisotropic_masking_root(roughness, least)
         },
+        cap,
     )
 }

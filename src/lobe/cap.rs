@@ -15,6 +15,10 @@
 //!
 //! Each is an equality for c = 0, so a bound that is made of them becomes the function itself as the cap closes.
 //!
+//! Where n and ω_i are not fixed, but lie in caps of their own around mean directions, the chords add: ω·n is at
+//! most that of the axes and both chords, the half vectors lie within the sum of the chords of ω_i and ω, and a sine
+//! is less than that to the mean normal by no more than the chord of the normals.
+//!
 //! # The cap of a ball
 //!
 //! The directions from a point to a ball at distance l, of radius ρ, are those within the angle γ of its centre,
@@ -30,17 +34,19 @@
 
 use glam::Vec3;
 
+use super::Majorant;
+use super::half_vectors::HalfVectors;
 use crate::base::{Direction, Error, number_in};
-use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3, round_down};
+use crate::num::{Real, Single, UNIT_ROUNDOFF, Vector3, round_down};
 
 /// Budget for dot products, cross products and differences of directions, in units of u.
-const CHORD_ROUNDINGS: f32 = 32.0;
-/// Budget for the quotient of the sine of a half vector's angle.
-const SINE_ROUNDINGS: u16 = 6;
+const CHORD_ROUNDINGS: f32 = 40.0;
 /// Budget for the distance of a ball.
 const DISTANCE_ROUNDINGS: u16 = 4;
 /// Budget for the chord of a ball, beside that of its distance.
 const BALL_ROUNDINGS: u16 = 6;
+/// Budget for the distance of two axes, in units of u.
+const UNION_ROUNDINGS: f32 = 20.0;
 
 /// A cap of directions: the unit vectors whose distance from an axis is at most a chord.
 ///
@@ -76,6 +82,11 @@ impl Cap {
     pub fn new(axis: Direction, chord: f32) -> Result<Self, Error> {
         let chord = number_in("chord", chord, "in [0, 2]", 0.0..=2.0)?;
         Ok(Self { axis, chord })
+    }
+
+    /// The cap that holds `axis` alone.
+    pub(super) const fn of_axis(axis: Direction) -> Self {
+        Self { axis, chord: 0.0 }
     }
 
     /// All directions.
@@ -123,7 +134,46 @@ impl Cap {
         self.chord
     }
 
-    /// The cap as a single lane.
+    /// A cap that holds all of `caps`, around the mean of their axes. `None` if there are none.
+    ///
+    /// Its chord is the greatest sum of the distance of an axis from the mean, and the chord there. It is rounded up,
+    /// unless all axes are the same.
+    #[must_use]
+    pub fn union(caps: impl Iterator<Item = Self> + Clone) -> Option<Self> {
+        let first = caps.clone().next()?.axis;
+        let mut sum = Vec3::ZERO;
+        let mut is_one_axis = true;
+        for cap in caps.clone() {
+            sum += *cap.axis;
+            is_one_axis &= cap.axis == first;
+        }
+        let (axis, rounding) = if is_one_axis {
+            (first, 0.0)
+        } else {
+            // Any axis holds all of them.
+            let mean = Direction::new(sum).unwrap_or(first);
+            (mean, UNION_ROUNDINGS * UNIT_ROUNDOFF)
+        };
+        let chord = caps.fold(0.0, |chord: f32, cap| {
+            let apart = Vector3::from(*cap.axis - *axis).length();
+            chord.max(apart + cap.chord)
+        });
+        Some(Self {
+            axis,
+            chord: (chord + rounding).min(2.0),
+        })
+    }
+
+    /// The cap in as many lanes as `like` has, not enlarged.
+    #[inline(always)]
+    pub(super) fn splat<N: Single>(&self, like: N) -> Caps<N> {
+        Caps {
+            axis: Vector3::splat(like, self.axis.into()),
+            chord: like.splat(self.chord),
+        }
+    }
+
+    /// The cap as a single lane, enlarged for rounding.
     pub(super) fn lanes(&self) -> Caps<f32> {
         Caps {
             axis: self.axis.into(),
@@ -132,13 +182,16 @@ impl Cap {
     }
 }
 
-/// A [`Cap`] in each lane, enlarged for rounding.
+/// A [`Cap`] in each lane.
+///
+/// Bounds take the directions towards which they hold in a cap that is [enlarged](Cap::lanes) for rounding. Caps of
+/// normals and of incoming directions are not.
 #[derive(Clone, Copy, Debug)]
 pub struct Caps<N> {
     /// A unit vector, or zero for all directions.
-    axis: Vector3<N>,
+    pub(super) axis: Vector3<N>,
     /// At most 2, but for rounding.
-    chord: N,
+    pub(super) chord: N,
 }
 
 impl<N: Single> Caps<N> {
@@ -171,6 +224,13 @@ impl<N: Single> Caps<N> {
         );
         let axis = Vector3::new(x, y, z);
         (Self { axis, chord }, gap)
+    }
+
+    /// The caps that hold `axis` alone, a unit vector.
+    #[inline(always)]
+    pub fn around(axis: Vector3<N>) -> Self {
+        let chord = axis.x.zero();
+        Self { axis, chord }
     }
 
     /// `value` in each lane.
@@ -224,10 +284,24 @@ impl<N: Single> Caps<N> {
         (x * x + y * y + z * z).sqrt() - norm * self.chord.widen()
     }
 
-    /// The greatest ω·n, at most 1. Not positive if all of the cap is below the horizon of `normal` = n.
+    /// The greatest ω·n for n in `normals`, at most 1. Not positive if all of the cap is below every horizon.
     #[inline(always)]
-    pub fn greatest_cosine(&self, normal: Vector3<N>) -> N {
-        (normal.dot(self.axis) + self.chord).min(self.chord.splat(1.0))
+    pub fn greatest_cosine(&self, normals: &Self) -> N {
+        self.cosine(normals).greatest
+    }
+
+    /// The greatest ω·n for n in `normals`, and a typical max(ω·n, 0): ½(x + √(x² + c²)) for the cosine x of the
+    /// axes and the sum c of the chords.
+    #[inline(always)]
+    pub fn cosine(&self, normals: &Self) -> Majorant<N> {
+        let cosine = normals.axis.dot(self.axis);
+        let spread = self.chord + normals.chord;
+        let greatest = (cosine + spread).min(spread.splat(1.0));
+        let both = (cosine * cosine + spread * spread).sqrt();
+        Majorant {
+            greatest,
+            typical: ((cosine + both) * 0.5).min(greatest),
+        }
     }
 
     /// The least ω·n, not negative: zero if some of the cap is below the horizon.
@@ -248,66 +322,9 @@ impl<N: Single> Caps<N> {
         ((self.axis - direction).length() - self.chord).max(self.chord.zero())
     }
 
-    /// The half vectors ω_i + ω for `incoming` = ω_i.
+    /// The half vectors ω_i + ω for ω_i in `incoming`.
     #[inline(always)]
-    pub fn half_vectors(&self, incoming: Vector3<N>) -> HalfVectors<N> {
-        let middle = incoming + self.axis;
-        let length = middle.length();
-        let (zero, chord) = (length.zero(), self.chord);
-        HalfVectors {
-            middle,
-            lengths: [
-                (length - chord).max(zero),
-                (length + chord).min(zero.splat(2.0)),
-            ],
-            chord,
-        }
-    }
-}
-
-/// A ball that holds half vectors, in each lane.
-#[derive(Clone, Copy)]
-pub struct HalfVectors<N> {
-    /// h
-    middle: Vector3<N>,
-    /// The least and the greatest length. The latter is positive.
-    lengths: [N; 2],
-    chord: N,
-}
-
-impl<N: Single> HalfVectors<N> {
-    /// The least and the greatest cosine ω_i·ω_h = ½‖ω_i + ω‖ of the half angle.
-    #[inline(always)]
-    pub fn half_angle_cosines(&self) -> [N; 2] {
-        self.lengths.map(
-            #[inline(always)]
-            |length| length * 0.5,
-        )
-    }
-
-    /// The least sine of the angle to `normal`, at most 1.
-    #[inline(always)]
-    pub fn least_sine(&self, normal: Vector3<N>) -> N {
-        let across = self.middle.cross(normal).length();
-        let share = (across - self.chord) / self.lengths[1] * round_down(1.0, SINE_ROUNDINGS);
-        Real::max(share, share.zero()).min(share.splat(1.0))
-    }
-
-    /// The least length of (x/a, y/b) for the unit vectors (x, y, z) along the half vectors, in the frame to
-    /// which `to_frame` rotates, and the reciprocals `factors` = \[1/a, 1/b\].
-    ///
-    /// By the triangle inequality, or by that of each coordinate alone: the greater of both.
-    #[inline(always)]
-    pub fn least_scaled_sine(&self, to_frame: &Matrix3<N>, factors: [N; 2]) -> N {
-        let [a, b] = factors;
-        let Vector3 { x, y, .. } = *to_frame * self.middle;
-        let length = |x: N, y: N| (x * x + y * y).sqrt();
-        let (zero, chord) = (a.zero(), self.chord);
-        let together = length(x * a, y * b) - chord * a.max(b);
-        let alone = length(
-            (x.abs() - chord).max(zero) * a,
-            (y.abs() - chord).max(zero) * b,
-        );
-        Real::max(together, alone) / self.lengths[1] * round_down(1.0, SINE_ROUNDINGS)
+    pub fn half_vectors(&self, incoming: &Self) -> HalfVectors<N> {
+        HalfVectors::within(incoming.axis + self.axis, self.chord + incoming.chord)
     }
 }

@@ -144,6 +144,34 @@ pub struct FresnelMajorant {
 }
 
 impl FresnelMajorant {
+    /// The majorant, or 1 where a caller's numbers are none.
+    pub(super) fn or_one(self) -> Self {
+        let is_valid = self.base >= LEAST_REFLECTED && (0.0..=f32::MAX).contains(&self.rise);
+        if is_valid {
+            self
+        } else {
+            Self {
+                base: 1.0,
+                rise: 0.0,
+            }
+        }
+    }
+
+    /// A majorant of both.
+    pub(super) fn max(self, other: Self) -> Self {
+        Self {
+            base: self.base.max(other.base),
+            rise: self.rise.max(other.rise),
+        }
+    }
+
+    /// Its value, at most 1.
+    #[inline(always)]
+    pub(super) fn value<N: Single>(self, half_angle_cosine: N) -> N {
+        let rise = half_angle_cosine.one_minus().fifth_power() * self.rise;
+        (rise + self.base).min(rise.splat(1.0))
+    }
+
     /// Searches a close majorant of `reflectance`, which must be quasi-convex: of several candidates the one
     /// with the smallest mean quotient of majorant and F.
     ///

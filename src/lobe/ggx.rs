@@ -65,7 +65,8 @@ impl Ggx {
     pub fn ndf(self, cosine: f32) -> f32 {
         if cosine > 0.0 {
             let sine_squared = (1.0 - cosine) * (1.0 + cosine);
-            ndf_of_squares(self.roughness, cosine * cosine, sine_squared, 1.0)
+            let alpha_squared = self.roughness * self.roughness;
+            ndf_of_squares(alpha_squared, cosine * cosine, sine_squared, 1.0)
         } else {
             0.0
         }
@@ -106,32 +107,31 @@ pub(super) fn ndf_at<N: Single>(roughness: N, half_vector: Vector3<N>, normal: V
     }
     let sine_squared = half_vector.cross(normal).length_squared();
     let length_squared = half_vector.length_squared();
-    let ndf = ndf_of_squares(roughness, cosine * cosine, sine_squared, length_squared);
+    let ndf = ndf_of_squares(
+        roughness * roughness,
+        cosine * cosine,
+        sine_squared,
+        length_squared,
+    );
     N::select(is_above, ndf, cosine.zero())
 }
 
-/// The greatest D(θ_m) for sines of θ_m from `least_sine` to 1: D falls with θ_m.
+/// D for the sine of θ_m, which is at most 1.
 #[inline(always)]
-pub(super) fn greatest_ndf<N: Single>(roughness: N, least_sine: N) -> N {
-    let sine_squared = least_sine * least_sine;
-    let cosine_squared = least_sine.one_minus() * (least_sine + 1.0);
-    ndf_of_squares(
-        roughness,
-        cosine_squared,
-        sine_squared,
-        least_sine.splat(1.0),
-    )
+pub(super) fn ndf_of_sine<N: Single>(alpha_squared: N, sine: N) -> N {
+    let (sine_squared, cosine_squared) = (sine * sine, sine.one_minus() * (sine + 1.0));
+    let one = sine.splat(1.0);
+    ndf_of_squares(alpha_squared, cosine_squared, sine_squared, one)
 }
 
 /// D = α²/(π (α²c² + s²)²), with c² and s² given times `length_squared`.
 #[inline(always)]
 fn ndf_of_squares<N: Single>(
-    roughness: N,
+    alpha_squared: N,
     cosine_squared: N,
     sine_squared: N,
     length_squared: N,
 ) -> N {
-    let alpha_squared = roughness * roughness;
     let spread = (alpha_squared * cosine_squared + sine_squared) / length_squared;
     // At least α² but for rounding, which is unbounded where lengths underflow.
     let spread = spread.max(alpha_squared);

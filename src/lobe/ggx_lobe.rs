@@ -5,8 +5,8 @@ use glam::{Mat3, Vec3};
 use super::ggx::masking_root;
 use super::ggx_lobes::{GgxLobes, reflectance};
 use super::{
-    Cap, Fresnel, Ggx, HeightCorrelated, Incidence, Lobe, LobeNumbers, MaskingShadowing, NoFresnel,
-    Separable, padded,
+    Cap, Caps, Fresnel, Ggx, HeightCorrelated, Incidence, Lobe, LobeNumbers, Majorant,
+    MaskingShadowing, NoFresnel, Separable, padded,
 };
 use crate::base::Direction;
 use crate::num::{Quad, Single, Vector3, exact_dot};
@@ -44,7 +44,7 @@ pub struct GgxLobe<F = NoFresnel, G = HeightCorrelated> {
     /// μ, or zero if the light arrives from below.
     incident_cosine: f32,
     /// √(kμ² + α²)
-    incident_root: f32,
+    pub(super) incident_root: f32,
     masking_shadowing: PhantomData<G>,
 }
 
@@ -221,14 +221,15 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
         )
     }
 
-    /// Needs of F that it is quasi-convex, and of G2 that it grows with μ_o.
+    /// Needs of F that it is quasi-convex, and of G2 what [`MaskingShadowing`] says.
     #[inline]
     fn maximum_within(&self, cap: &Cap) -> f32 {
-        self.lanes().maximum_within::<G>(
+        let majorant = self.lanes().majorant::<G>(
             #[inline(always)]
             |cosine| self.fresnel.reflectance(cosine),
             &cap.lanes(),
-        )
+        );
+        majorant.greatest
     }
 
     fn horizon_normal(&self) -> Option<Direction> {
@@ -273,6 +274,23 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
                 reflectance(parameters, fresnel_of, cosine)
             },
             outgoing,
+        )
+    }
+
+    #[inline(always)]
+    fn majorant_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        lobe_of: impl Fn(usize) -> Option<&'a Self>,
+        cap: &Caps<N>,
+    ) -> Majorant<N> {
+        let (lobes, parameters) = GgxLobes::from_numbers(numbers);
+        lobes.majorant::<G>(
+            #[inline(always)]
+            |cosine| {
+                let fresnel_of = |i| lobe_of(i).map(|lobe| lobe.fresnel);
+                reflectance(parameters, fresnel_of, cosine)
+            },
+            cap,
         )
     }
 

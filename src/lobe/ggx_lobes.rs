@@ -1,16 +1,14 @@
 //! The formulas of [`GgxLobe`](super::GgxLobe), for one lobe in each lane.
 
-use super::cap::{Caps, HalfVectors};
 use super::fresnel::{LEAST_REFLECTED, quasi_convex_maximum};
-use super::ggx::{greatest_ndf, masking_root, ndf_at};
-use super::{Fresnel, LobeNumbers, MaskingShadowing};
+use super::ggx::{masking_root, ndf_at};
+use super::ggx_majorant::GgxMembers;
+use super::{Caps, Fresnel, LobeNumbers, Majorant, MaskingShadowing};
 use crate::base::mirrored;
 use crate::num::{Quad, Real, Single, UNIT_ROUNDOFF, Vector3};
 
 /// Pays for the rounding of the half angle's cosine at the end of a segment, in units of u.
 const END_COSINE_ROUNDINGS: f32 = 16.0;
-/// Pays for the rounding of the maximum within a cap, besides those of F and of the cap.
-const MAXIMUM_WITHIN_ROUNDINGS: u16 = 64;
 /// Pays for the rounding of F·G2/G1(μ).
 const MAX_REFLECTED_ROUNDINGS: u16 = 96;
 
@@ -218,53 +216,30 @@ impl<N: Single> GgxLobes<N> {
         )
     }
 
-    /// An upper bound of the value towards all directions of a cap, where `reflectance` is F as a function of
-    /// cosθ_h.
+    /// The majorant within a cap, where `reflectance` is F as a function of cosθ_h.
     #[inline(always)]
-    pub fn maximum_within<G: MaskingShadowing>(
+    pub fn majorant<G: MaskingShadowing>(
         &self,
         reflectance: impl Fn(N) -> N,
         cap: &Caps<N>,
-    ) -> N {
-        self.maximum_within_with::<G>(
-            reflectance,
-            cap,
+    ) -> Majorant<N> {
+        let members = GgxMembers::one(self);
+        let alpha_squared = self.roughness * self.roughness;
+        members.majorant::<G>(
             #[inline(always)]
-            |half_vectors| greatest_ndf(self.roughness, half_vectors.least_sine(self.normal)),
+            |cosines| quasi_convex_maximum(&reflectance, cosines),
+            #[inline(always)]
+            |half_vectors| {
+                members.ndf(
+                    half_vectors,
+                    #[inline(always)]
+                    |_| alpha_squared,
+                )
+            },
             #[inline(always)]
             |outgoing_cosine| masking_root(self.roughness, outgoing_cosine),
+            cap,
         )
-    }
-
-    /// The upper bound with the maximum of another NDF, a function of the half vectors, and another root, which
-    /// goes with the greatest μ_o.
-    #[inline(always)]
-    pub(super) fn maximum_within_with<G: MaskingShadowing>(
-        &self,
-        reflectance: impl Fn(N) -> N,
-        cap: &Caps<N>,
-        greatest_ndf: impl FnOnce(&HalfVectors<N>) -> N,
-        masking_root: impl FnOnce(N) -> N,
-    ) -> N {
-        let outgoing_cosine = cap.greatest_cosine(self.normal);
-        let zero = outgoing_cosine.zero();
-        let is_lit = outgoing_cosine.is_positive() & self.incident_cosine.is_positive();
-        if N::is_known_false(is_lit) {
-            return zero;
-        }
-        let half_vectors = cap.half_vectors(self.incoming);
-        let maximum = quasi_convex_maximum(reflectance, half_vectors.half_angle_cosines())
-            * greatest_ndf(&half_vectors)
-            * G::over_four_incident_cosines_in_lanes(
-                self.incident_cosine,
-                self.incident_root,
-                outgoing_cosine,
-                masking_root(outgoing_cosine),
-            );
-        // It may underflow.
-        let least = zero.splat(f32::MIN_POSITIVE);
-        let maximum = Real::max(maximum.round_up(MAXIMUM_WITHIN_ROUNDINGS), least);
-        N::select(is_lit, maximum, zero)
     }
 
     /// The value with another NDF, a function of the half vector, and another root, a function of μ_o.

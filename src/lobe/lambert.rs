@@ -2,9 +2,9 @@ use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
-use super::{Cap, Lobe, LobeNumbers, padded};
+use super::{Cap, Caps, Lobe, LobeNumbers, Majorant, padded};
 use crate::base::{Direction, Error, number_in};
-use crate::num::{Single, Vector3, round_up, sqrt};
+use crate::num::{Real, Single, Vector3, sqrt};
 
 /// Budget for the products of a maximum within a cap.
 const MAXIMUM_ROUNDINGS: u16 = 4;
@@ -70,8 +70,8 @@ impl Lobe for LambertLobe {
 
     #[inline]
     fn maximum_within(&self, cap: &Cap) -> f32 {
-        let cosine = cap.lanes().greatest_cosine(self.normal.into());
-        round_up(self.albedo * FRAC_1_PI * cosine.max(0.0), MAXIMUM_ROUNDINGS)
+        let normals = Caps::around(self.normal.into());
+        lambert_majorant(self.albedo, &normals, &cap.lanes()).greatest
     }
 
     fn is_empty(&self) -> bool {
@@ -110,6 +110,35 @@ impl Lobe for LambertLobe {
     ) -> N {
         let [x, y, z, albedo, ..] = *numbers;
         lambert(albedo, Vector3::new(x, y, z), outgoing)
+    }
+
+    #[inline(always)]
+    fn majorant_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        _: impl Fn(usize) -> Option<&'a Self>,
+        cap: &Caps<N>,
+    ) -> Majorant<N> {
+        let [x, y, z, albedo, ..] = *numbers;
+        lambert_majorant(albedo, &Caps::around(Vector3::new(x, y, z)), cap)
+    }
+}
+
+/// The majorant within a cap of [`LambertLobe`]s with these normals.
+#[inline(always)]
+pub(super) fn lambert_majorant<N: Single>(
+    albedo: N,
+    normals: &Caps<N>,
+    cap: &Caps<N>,
+) -> Majorant<N> {
+    let cosine = cap.cosine(normals);
+    let (radiance, zero) = (albedo * FRAC_1_PI, albedo.zero());
+    let greatest = radiance * Real::max(cosine.greatest, zero);
+    let greatest = greatest.round_up(MAXIMUM_ROUNDINGS);
+    // It may underflow.
+    let typical = Real::max(radiance * cosine.typical, zero.splat(f32::MIN_POSITIVE));
+    Majorant {
+        greatest,
+        typical: typical.min(greatest),
     }
 }
 

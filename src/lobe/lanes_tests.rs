@@ -20,22 +20,22 @@ use crate::num::{
 };
 
 /// A linear congruential generator, which is good enough to pick inputs.
-struct Random(u32);
+pub struct Random(pub u32);
 
 impl Random {
     /// A number in [0, 1).
-    fn number(&mut self) -> f32 {
+    pub fn number(&mut self) -> f32 {
         self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (self.0 >> 8) as f32 / 16_777_216.0
     }
 
-    fn direction(&mut self) -> Direction {
+    pub fn direction(&mut self) -> Direction {
         let vector = from_fn(|_| 2.0 * self.number() - 1.0);
         Direction::new(Vec3::from_array(vector)).unwrap_or(Direction::X)
     }
 
     /// Sometimes along the normal, or from below.
-    fn incidence(&mut self) -> Incidence {
+    pub fn incidence(&mut self) -> Incidence {
         let normal = self.direction();
         if self.number() < 0.1 {
             return Incidence::head_on(normal);
@@ -45,7 +45,7 @@ impl Random {
         Incidence { normal, incoming }
     }
 
-    fn roughness(&mut self) -> f32 {
+    pub fn roughness(&mut self) -> f32 {
         let share = self.number();
         (share * share * share).max(1e-4)
     }
@@ -53,7 +53,7 @@ impl Random {
 
 /// No facet shadows another.
 #[derive(Clone, Copy)]
-struct MaskedAlone;
+pub struct MaskedAlone;
 
 impl MaskingShadowing for MaskedAlone {
     fn over_four_incident_cosines(cosine: f32, root: f32, _: f32, _: f32) -> f32 {
@@ -63,7 +63,7 @@ impl MaskingShadowing for MaskedAlone {
 
 /// A Fresnel factor that has no form in lanes.
 #[derive(Clone, Copy)]
-struct Squared(f32);
+pub struct Squared(pub f32);
 
 impl Fresnel for Squared {
     fn reflectance(&self, half_angle_cosine: f32) -> f32 {
@@ -73,11 +73,11 @@ impl Fresnel for Squared {
 }
 
 /// What `number` returns for the lights from `start` on, in lanes.
-fn gathered<S: Simd>(simd: S, start: usize, number: impl Fn(usize) -> f32) -> F32Lanes<S> {
+pub fn gathered<S: Simd>(simd: S, start: usize, number: impl Fn(usize) -> f32) -> F32Lanes<S> {
     F32Lanes::new(simd, 0.0).gather(|i| number(start + i))
 }
 
-fn gathered_vector<S: Simd>(
+pub fn gathered_vector<S: Simd>(
     simd: S,
     start: usize,
     vector: impl Fn(usize) -> Vec3,

@@ -2,7 +2,7 @@ use core::f64::consts::FRAC_1_PI;
 
 use glam::{Mat3, Vec3};
 
-use super::{Cap, Fresnel, Ggx, Incidence, Lobe, LobeNumbers, ltc_table, padded};
+use super::{Cap, Caps, Fresnel, Ggx, Incidence, Lobe, LobeNumbers, ltc_table, padded};
 use crate::base::{Direction, Error, number_in};
 use crate::num::{Single, Vector3, exact_dot, round_up, sqrt_f64};
 
@@ -321,7 +321,7 @@ impl Lobe for LtcLobe {
     /// upper bound. It bounds ‖M⁻¹ω‖ for wide caps.
     fn maximum_within(&self, cap: &Cap) -> f32 {
         let (lanes, cap) = (self.lanes(), cap.lanes());
-        let is_above = cap.greatest_cosine(lanes.normal) > 0.0;
+        let is_above = cap.greatest_cosine(&Caps::around(lanes.normal)) > 0.0;
         let [first, third] = [lanes.first, lanes.third].map(Vector3::widen);
         let second = third.cross(first);
         let rows = [first, second, third];

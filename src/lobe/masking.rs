@@ -4,8 +4,18 @@ use crate::num::Single;
 
 /// Smith's masking-shadowing function G2: the share of facets that are both lit and visible.
 ///
-/// It is a type parameter of a lobe, so that lights are culled with the form that an engine shades with. The
-/// bounds rely on this: every form is at most G1(μ_i), grows with μ_o, and falls with the root of ω_o.
+/// It is a type parameter of a lobe, so that lights are culled with the form that an engine shades with.
+///
+/// # What every form must satisfy
+///
+/// - G2 is at most G1(μ_i).
+/// - G2/(4μ_i) grows with μ_o, for a fixed roughness, and falls with the root of ω_o, for a fixed μ_o.
+/// - G2/(4μ_i) falls with μ_i and with the root of ω_i, each while the other is fixed.
+///
+/// "Grows" and "falls" include that it does not change. The bounds of a lobe rely on the first two, those of many
+/// lobes at once ([`LobeFamily`](crate::LobeFamily)) on all. Let Λ_i and Λ_o be the roots. The two forms of this
+/// crate divide 1 by 2(Λ_i + μ_i Λ_o/μ_o) and by (μ_i + Λ_i)(1 + Λ_o/μ_o): both sums grow with μ_i, Λ_i and Λ_o, and
+/// Λ_o/μ_o = √(k + α²/μ_o²) falls with μ_o.
 ///
 /// ```
 /// use stochastic_light_culling::{Ggx, HeightCorrelated, MaskingShadowing, Separable};

@@ -11,16 +11,22 @@ mod family;
 mod fresnel;
 mod gaussian_fit;
 mod ggx;
+mod ggx_family;
 mod ggx_lobe;
 mod ggx_lobes;
+mod ggx_majorant;
+mod half_vectors;
 mod incidence;
 mod lambert;
+mod lambert_family;
 #[cfg(all(test, feature = "cull"))]
 mod lanes_tests;
 #[cfg(feature = "ltc")]
 mod ltc_lobe;
 #[cfg(feature = "ltc")]
 mod ltc_table;
+#[cfg(all(test, feature = "cull"))]
+mod majorant_tests;
 mod masking;
 mod phong;
 mod reflected_gaussian;
@@ -42,10 +48,12 @@ pub use family::{Blind, LobeFamily, ReceiverLobe};
 pub use fresnel::{Fresnel, FresnelMajorant, NoFresnel, Schlick};
 pub(crate) use gaussian_fit::toksvig;
 pub use ggx::Ggx;
+pub use ggx_family::GgxFamily;
 pub use ggx_lobe::GgxLobe;
 pub(crate) use ggx_lobes::{GgxLobes, PlaneOfIncidence};
 pub use incidence::Incidence;
 pub use lambert::LambertLobe;
+pub use lambert_family::LambertFamily;
 #[cfg(feature = "ltc")]
 pub use ltc_lobe::LtcLobe;
 pub use masking::{HeightCorrelated, MaskingShadowing, Separable};

@@ -2,7 +2,7 @@ use core::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::{Cap, Incidence, Lobe, LobeNumbers, padded};
+use super::{Cap, Caps, Incidence, Lobe, LobeNumbers, padded};
 use crate::base::{Direction, Error, number_in};
 use crate::num::{self, Real, Single, Vector3, exact_dot};
 
@@ -145,7 +145,7 @@ impl Lobe for PhongLobe {
         let (lanes, cap) = (self.lanes(), cap.lanes());
         let distance = f64::from(cap.least_distance(lanes.axis));
         let distance_squared = distance * distance;
-        let is_above = cap.greatest_cosine(lanes.normal) > 0.0;
+        let is_above = cap.greatest_cosine(&Caps::around(lanes.normal)) > 0.0;
         if !is_above || self.is_empty() || distance_squared >= 2.0 {
             return 0.0;
         }

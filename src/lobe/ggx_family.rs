@@ -1,0 +1,148 @@
+use core::fmt::{self, Debug, Formatter};
+use core::marker::PhantomData;
+
+use super::ggx::masking_root;
+use super::ggx_majorant::{GgxMembers, worst_alpha_squared};
+use super::{
+    Cap, Caps, Fresnel, FresnelMajorant, GgxLobe, HeightCorrelated, LobeFamily, Majorant,
+    MaskingShadowing, ReceiverLobe,
+};
+use crate::num::Single;
+
+/// What stands for many [`GgxLobe`]s with the masking function `G`: caps of normals and of incoming directions, the
+/// least cosine of incidence, a range of roughness, and a majorant of the Fresnel factors.
+///
+/// Within a cap of directions its majorant is the product of the greatest F, D and G2/(4μ_i) of any such lobe. The
+/// derivation, and the proof that it nests, are in the source.
+///
+/// Lobes that are [empty](crate::Lobe::is_empty) reflect nothing, so a union leaves them out.
+pub struct GgxFamily<G = HeightCorrelated> {
+    numbers: Numbers,
+    masking_shadowing: PhantomData<fn() -> G>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Numbers {
+    normals: Cap,
+    incoming: Cap,
+    /// The least μ, or zero if the family is empty.
+    incident_cosine: f32,
+    /// The least root of G1(ω_i)
+    incident_root: f32,
+    /// The least and the greatest α.
+    roughness: [f32; 2],
+    fresnel: FresnelMajorant,
+}
+
+impl Numbers {
+    fn is_empty(&self) -> bool {
+        self.incident_cosine <= 0.0
+    }
+
+    /// All but the caps.
+    fn union_without_caps(self, other: Self) -> Self {
+        let ([least, most], [other_least, other_most]) = (self.roughness, other.roughness);
+        Self {
+            incident_cosine: self.incident_cosine.min(other.incident_cosine),
+            incident_root: self.incident_root.min(other.incident_root),
+            roughness: [least.min(other_least), most.max(other_most)],
+            fresnel: self.fresnel.max(other.fresnel),
+            ..self
+        }
+    }
+}
+
+impl<F: Fresnel, G: MaskingShadowing> ReceiverLobe for GgxLobe<F, G> {
+    type Family = GgxFamily<G>;
+
+    fn family(&self) -> GgxFamily<G> {
+        GgxFamily::new(Numbers {
+            normals: Cap::of_axis(self.normal()),
+            incoming: Cap::of_axis(self.incoming()),
+            incident_cosine: self.incident_cosine(),
+            incident_root: self.incident_root,
+            roughness: [self.ggx().roughness(); 2],
+            fresnel: self.fresnel().majorant().or_one(),
+        })
+    }
+}
+
+impl<G> GgxFamily<G> {
+    fn new(numbers: Numbers) -> Self {
+        Self {
+            numbers,
+            masking_shadowing: PhantomData,
+        }
+    }
+}
+
+impl<G: MaskingShadowing> LobeFamily for GgxFamily<G> {
+    fn union(mut families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
+        let lit = families
+            .clone()
+            .map(|family| family.numbers)
+            .filter(|numbers| !numbers.is_empty());
+        let Some(normals) = Cap::union(lit.clone().map(|numbers| numbers.normals)) else {
+            return families.next();
+        };
+        let incoming = Cap::union(lit.clone().map(|numbers| numbers.incoming))?;
+        let rest = lit.reduce(Numbers::union_without_caps)?;
+        Some(Self::new(Numbers {
+            normals,
+            incoming,
+            ..rest
+        }))
+    }
+
+    #[inline(always)]
+    fn majorant_in_lanes<N: Single>(&self, cap: &Caps<N>) -> Majorant<N> {
+        let numbers = &self.numbers;
+        let incident_cosine = cap.splat(numbers.incident_cosine);
+        let members = GgxMembers {
+            normals: numbers.normals.splat(incident_cosine),
+            incoming: numbers.incoming.splat(incident_cosine),
+            incident_cosine,
+            incident_root: cap.splat(numbers.incident_root),
+        };
+        let roughness = numbers.roughness;
+        members.majorant::<G>(
+            #[inline(always)]
+            |[least_cosine, _]| numbers.fresnel.value(least_cosine),
+            #[inline(always)]
+            |half_vectors| {
+                let [least, most] = roughness;
+                let range = [cap.splat(least * least), cap.splat(most * most)];
+                members.ndf(
+                    half_vectors,
+                    #[inline(always)]
+                    |sine| worst_alpha_squared(range, sine),
+                )
+            },
+            #[inline(always)]
+            |outgoing_cosine| masking_root(cap.splat(roughness[0]), outgoing_cosine),
+            cap,
+        )
+    }
+}
+
+// Derived, these would ask the same of `G`.
+
+impl<G> Clone for GgxFamily<G> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<G> Copy for GgxFamily<G> {}
+
+impl<G> Debug for GgxFamily<G> {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        self.numbers.fmt(formatter)
+    }
+}
+
+impl<G> PartialEq for GgxFamily<G> {
+    fn eq(&self, other: &Self) -> bool {
+        self.numbers == other.numbers
+    }
+}

@@ -1,0 +1,144 @@
+//! Majorants of GGX lobes within a cap of directions: of one lobe, or of all members of a family.
+//!
+//! # The bound
+//!
+//! The members have normals within a chord c_n of n, incoming directions within c_i of i, cosines of at least μ,
+//! roots of G1 of at least Λ, roughnesses in \[α₀, α₁\], and Fresnel factors of at most F̂(cosθ_h). One lobe is
+//! the family whose chords are zero. Let w be the axis of the cap, c_w its chord, h = i + w and c = c_i + c_w.
+//! The half vector of any member and any direction lies within c of h. So
+//!
+//! - its length is between ‖h‖ − c and L = min(‖h‖ + c, 2), and cosθ_h is half of that;
+//! - the sine of its angle to the member's normal is at least s = max(0, (‖h × n‖ − c)/L − c_n), since the cross
+//!   product of a unit vector changes by no more than the other vector does;
+//! - μ_o is at most m = min(1, n·w + c_w + c_n), and there is nothing to bound if m ≤ 0.
+//!
+//! D falls with s. As a function of a = α² it is a/(π (a(1 − s²) + s²)²), which rises up to a = s²/(1 − s²) and
+//! falls then. So its greatest value is at s, with that a clamped to \[α₀², α₁²\].
+//!
+//! G2/(4μ_i) is bounded by its value for μ, Λ, m, and the root of m for α₀, since it falls with μ_i and with both
+//! roots, and grows with μ_o ([`MaskingShadowing`]), and since the root √(μ² + α²(1 − μ²)) grows with α.
+//!
+//! The product of the three bounds is the majorant. As the chords close it becomes the lobe itself.
+//!
+//! # It nests
+//!
+//! Let n′, i′, w′ and their chords be those of a greater pair: c′_n ≥ ‖n′ − n‖ + c_n, and so on. Then
+//! ‖h′ − h‖ ≤ c′ − c. Hence ‖h′‖ − c′ ≤ ‖h‖ − c and L′ ≥ L, and
+//!
+//! ‖h′ × n′‖ − c′ ≤ ‖h × n′‖ − c ≤ ‖h × n‖ − c + ‖h‖ ‖n′ − n‖.
+//!
+//! By ‖h‖ ≤ L ≤ L′, the last term over L′ is at most ‖n′ − n‖ ≤ c′_n − c_n. The rest over L′ is at most
+//! (‖h × n‖ − c)/L if that is positive, and else not positive. So s′ ≤ s. In the same way m′ ≥ m, and a chord
+//! that is clamped to 2 makes s′ zero and m′ one. D̂ is a maximum over a set that grows with the family, of a function
+//! that falls with s; F̂ and the bound of G2 are monotonic in all of their numbers. So the majorant of the greater
+//! pair is at least that of the lesser.
+//!
+//! # The typical value
+//!
+//! It takes the sine, the cosines and the Fresnel factor of the middle, and the NDF that is filtered as for a
+//! Gaussian spread of half vectors: α̂² + ½(c/‖h‖ + c_n)², with the α̂ of the bound.
+
+use super::ggx::ndf_of_sine;
+use super::half_vectors::HalfVectors;
+use super::{Caps, GgxLobes, Majorant, MaskingShadowing};
+use crate::num::{Real, Single};
+
+/// Pays for the rounding of the majorant, besides those of one lobe's F and of the cap.
+const MAXIMUM_WITHIN_ROUNDINGS: u16 = 64;
+
+/// One GGX lobe, or the members of a family, in each lane: without Fresnel factor and roughness.
+#[derive(Clone, Copy)]
+pub(super) struct GgxMembers<N> {
+    pub normals: Caps<N>,
+    pub incoming: Caps<N>,
+    /// The least μ. Not positive if there is no member.
+    pub incident_cosine: N,
+    /// The least root of G1(ω_i)
+    pub incident_root: N,
+}
+
+impl<N: Single> GgxMembers<N> {
+    #[inline(always)]
+    pub fn one(lobe: &GgxLobes<N>) -> Self {
+        Self {
+            normals: Caps::around(lobe.normal),
+            incoming: Caps::around(lobe.incoming),
+            incident_cosine: lobe.incident_cosine,
+            incident_root: lobe.incident_root,
+        }
+    }
+
+    /// The majorant within a cap. `fresnel` gives an upper bound of F between two cosines of the half angle, `ndf`
+    /// the majorant of D, and `masking_root` the least root of G1(ω_o) for the greatest μ_o.
+    #[inline(always)]
+    pub fn majorant<G: MaskingShadowing>(
+        &self,
+        fresnel: impl Fn([N; 2]) -> N,
+        ndf: impl FnOnce(&HalfVectors<N>) -> Majorant<N>,
+        masking_root: impl Fn(N) -> N,
+        cap: &Caps<N>,
+    ) -> Majorant<N> {
+        let outgoing_cosine = cap.cosine(&self.normals);
+        let zero = self.incident_cosine.zero();
+        let is_lit = outgoing_cosine.greatest.is_positive() & self.incident_cosine.is_positive();
+        if N::is_known_false(is_lit) {
+            return Majorant::exactly(zero);
+        }
+        let half_vectors = cap.half_vectors(&self.incoming);
+        let ndf = ndf(&half_vectors);
+        let greatest = fresnel(half_vectors.half_angle_cosines())
+            * ndf.greatest
+            * self.masking::<G>(outgoing_cosine.greatest, &masking_root);
+        let typical = fresnel(half_vectors.typical_half_angle_cosines())
+            * ndf.typical
+            * self.masking::<G>(outgoing_cosine.typical, &masking_root);
+        // Both may underflow.
+        let least = zero.splat(f32::MIN_POSITIVE);
+        let greatest = Real::max(greatest.round_up(MAXIMUM_WITHIN_ROUNDINGS), least);
+        let typical = Real::max(typical, least).min(greatest);
+        let [greatest, typical] = N::select_all(is_lit, [greatest, typical], [zero; 2]);
+        Majorant { greatest, typical }
+    }
+
+    /// G2/(4μ_i) for a μ_o.
+    #[inline(always)]
+    fn masking<G: MaskingShadowing>(&self, cosine: N, masking_root: impl Fn(N) -> N) -> N {
+        G::over_four_incident_cosines_in_lanes(
+            self.incident_cosine,
+            self.incident_root,
+            cosine,
+            masking_root(cosine),
+        )
+    }
+
+    /// The majorant of an isotropic D. `alpha_squared` is the α² that makes D greatest, for the sine s.
+    #[inline(always)]
+    pub fn ndf(
+        &self,
+        half_vectors: &HalfVectors<N>,
+        alpha_squared: impl FnOnce(N) -> N,
+    ) -> Majorant<N> {
+        let sine = half_vectors.least_sine(&self.normals);
+        let alpha_squared = alpha_squared(sine);
+        let typical_sine = half_vectors.typical_sine(&self.normals);
+        Majorant {
+            greatest: ndf_of_sine(alpha_squared, sine),
+            typical: ndf_of_sine(self.filtered(alpha_squared, half_vectors), typical_sine),
+        }
+    }
+
+    /// α² widened by the spread of half vectors and normals, at most 1.
+    #[inline(always)]
+    pub fn filtered(&self, alpha_squared: N, half_vectors: &HalfVectors<N>) -> N {
+        let spread = half_vectors.spread(&self.normals);
+        (spread * spread * 0.5 + alpha_squared).min(spread.splat(1.0))
+    }
+}
+
+/// The a in \[α₀², α₁²\] for which D is greatest, for the sine s in \[0, 1\].
+#[inline(always)]
+pub(super) fn worst_alpha_squared<N: Single>(range: [N; 2], sine: N) -> N {
+    let [least, most] = range;
+    let ratio = sine * sine / (sine.one_minus() * (sine + 1.0));
+    Real::min(Real::max(ratio, least), most)
+}
