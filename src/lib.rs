@@ -261,8 +261,9 @@
 //!   are restored bit for bit. Deserialization goes through the constructors and returns their errors.
 //!   Bounds, projected shapes, batches and lists follow from these and are not serialized.
 //! - `wgsl`: the steps as text in WGSL, for shaders ([`wgsl`]).
-//! - `bytemuck`: `GpuEllipsoid` and `GpuSphere`, projected shapes as records that a shader can read. The two
-//!   arrays of `LightLists` can be uploaded unchanged.
+//! - `bytemuck`: records that shaders can read: lights (`GpuLight`), bounds (`GpuBound`), projected shapes (`GpuEllipsoid`,
+//!   `GpuSphere`), and the camera and numbers of a frame (`GpuCamera`, `GpuFrame`). The two arrays of `LightLists` can be
+//!   uploaded unchanged.
 //!
 //! # Sources
 //!
@@ -340,7 +341,10 @@ pub use cull::{
 #[cfg(feature = "wgsl")]
 pub use interop::wgsl;
 #[cfg(feature = "bytemuck")]
-pub use interop::{GpuEllipsoid, GpuSphere};
+pub use interop::{
+    GpuBound, GpuBuffer, GpuCamera, GpuEllipsoid, GpuFrame, GpuLight, GpuProjected, GpuSphere,
+    GpuTile,
+};
 pub use light::{
     ClusterSums, DistanceWindow, FilteredSample, FilteredSampling, FrameSeed, MipPyramid, Roulette,
     Seed, TileProbability, Vpl, Vsgl, Xi, pyramid_len, rank_along_curve,

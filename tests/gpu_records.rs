@@ -5,8 +5,8 @@ use std::mem::{align_of, offset_of, size_of};
 
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    Camera, Culler, DepthInterval, GpuEllipsoid, GpuSphere, LightBatch, LightLists, Sphere,
-    TileDepths, TileRectangle,
+    Camera, Culler, DepthInterval, GpuBound, GpuCamera, GpuEllipsoid, GpuFrame, GpuLight,
+    GpuProjected, GpuSphere, GpuTile, LightBatch, LightLists, Sphere, TileDepths, TileRectangle,
     glam::{Vec2, Vec3},
 };
 use support::generators::{self, cases};
@@ -40,6 +40,32 @@ fn records_lie_as_shaders_expect() {
     assert_eq!(
         (align_of::<GpuEllipsoid>(), align_of::<GpuSphere>()),
         (4, 4)
+    );
+}
+
+/// The same rules for the records of the shaders: each `vec3` and `mat3x3` at a multiple of 16, each `vec2` at one of 8,
+/// and no padding that Rust would add.
+#[test]
+fn records_of_kernels_lie_as_shaders_expect() {
+    macro_rules! offsets {
+        ($record:ident, $size:literal, $($field:ident $offset:literal),*) => {
+            $(assert_eq!(offset_of!($record, $field), $offset);)*
+            assert_eq!((size_of::<$record>(), align_of::<$record>()), ($size, 4));
+        };
+    }
+    offsets!(GpuLight, 64, position 0, flux 12, normal 16, cosine 28, incoming 32, roughness 44, fresnel 48, majorant 56);
+    offsets!(GpuBound, 96, light 0, offset 16, axes 32, semi_axes 80);
+    offsets!(GpuProjected, 64, x_and_y_axes 0, z_axis 16, near 28, center 32, far 44, slopes 48);
+    offsets!(
+        GpuCamera, 80,
+        right 0, deviation 12, up 16, secant 28, forward 32, rounding 44, anchor 48, depth_numerator 60, image 64,
+        depth_offset 76
+    );
+    offsets!(GpuTile, 16, min 0, max 8);
+    offsets!(
+        GpuFrame, 128,
+        camera 0, image_size 80, tiles 88, interleave 96, lights 100, intervals 104, room 108, delta 112,
+        least_distance_squared 116, seed 120, frame 124
     );
 }
 

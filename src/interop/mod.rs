@@ -1,12 +1,15 @@
 //! Serialization, and records and shader text for a GPU.
 
-#[cfg(feature = "bytemuck")]
-mod gpu;
 #[cfg(feature = "serde")]
 mod impl_serde;
+#[cfg(feature = "bytemuck")]
+mod records;
 
 #[cfg(feature = "wgsl")]
 pub mod wgsl;
 
 #[cfg(feature = "bytemuck")]
-pub use gpu::{GpuEllipsoid, GpuSphere};
+pub use records::{
+    GpuBound, GpuBuffer, GpuCamera, GpuEllipsoid, GpuFrame, GpuLight, GpuProjected, GpuSphere,
+    GpuTile,
+};

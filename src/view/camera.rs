@@ -105,6 +105,11 @@ impl<P: Projection> Camera<P> {
         &self.view
     }
 
+    #[cfg(feature = "bytemuck")]
+    pub(crate) fn projection(&self) -> &P {
+        &self.projection
+    }
+
     /// The rotation from world space to camera space. Its columns are the axes of world space.
     ///
     /// Camera space is left-handed. So the determinant is −1 for a right-handed world, which

@@ -34,9 +34,14 @@ impl Perspective {
         }
     }
 
-    #[cfg(feature = "serde")]
+    #[cfg(any(feature = "bytemuck", feature = "serde"))]
     pub(crate) fn depths(&self) -> [f32; 2] {
         [self.depth_numerator, self.depth_offset]
+    }
+
+    #[cfg(feature = "bytemuck")]
+    pub(crate) fn corner_secant(&self) -> f32 {
+        self.corner_secant
     }
 }
 

@@ -136,6 +136,12 @@ impl RigidView {
         terms.element_sum() * (TERM_ROUNDINGS * f64::EPSILON as f32)
     }
 
+    /// The anchor in world space, and its image in camera space.
+    #[cfg(feature = "bytemuck")]
+    pub fn anchor(&self) -> [Vec3; 2] {
+        [self.anchor, self.anchor_image]
+    }
+
     /// δ, the largest element of RᵀR − 1 in magnitude: how far the rotation R is from orthonormal.
     pub fn rotation_deviation(&self) -> f32 {
         self.rotation_deviation

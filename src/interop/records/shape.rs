@@ -1,7 +1,8 @@
-//! Projected shapes in the memory layout of shaders.
+//! Bounds and projected shapes in the memory layout of shaders.
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::bound::Ellipsoid;
 use crate::project::{ProjectedEllipsoid, ProjectedSphere};
 
 /// A [`ProjectedEllipsoid`] and the index of its light, for a storage buffer.
@@ -104,4 +105,75 @@ impl<P> From<&ProjectedSphere<P>> for GpuSphere {
             radius_squared: sphere.radius_squared(),
         }
     }
+}
+
+/// An [`Ellipsoid`] in world space, for shaders that project it: `SlcBound`, 96 bytes.
+///
+/// For lobes that have no shader, bounded on the CPU: `slc_project` takes it to camera space.
+///
+/// ```
+/// use stochastic_light_culling::{Ellipsoid, GpuBound, glam::{Mat3, Vec3}};
+///
+/// let ellipsoid = Ellipsoid::new(Vec3::X, Mat3::IDENTITY, Vec3::new(1.0, 2.0, 4.0))?;
+/// let record = GpuBound::from(&ellipsoid);
+/// assert_eq!((record.light, record.semi_axes), ([1.0, 0.0, 0.0], [1.0, 2.0, 4.0]));
+/// # Ok::<(), stochastic_light_culling::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuBound {
+    /// The position of the light; offset 0.
+    pub light: [f32; 3],
+    /// Zero.
+    pub padding: f32,
+    /// From the light to the centre; offset 16.
+    pub offset: [f32; 3],
+    /// Zero.
+    pub padding_of_offset: f32,
+    /// The directions of the axes, unit vectors, each with a zero after it: a `mat3x3f`; offset 32.
+    pub axes: [[f32; 4]; 3],
+    /// The semi-axes, at most 10³⁰, which stands for all of space; zeros if there is nothing; offset 80.
+    pub semi_axes: [f32; 3],
+    /// Zero.
+    pub padding_of_semi_axes: f32,
+}
+
+impl From<&Ellipsoid> for GpuBound {
+    fn from(ellipsoid: &Ellipsoid) -> Self {
+        // Shaders take it for everything, and may have no infinity.
+        const LARGEST: f32 = 1e30;
+        let [light, offset] = ellipsoid.center_parts().map(|part| part.to_array());
+        let semi_axes = ellipsoid.semi_axes().to_array();
+        let axes = ellipsoid.rotation().to_cols_array_2d();
+        Self {
+            light,
+            padding: 0.0,
+            offset,
+            padding_of_offset: 0.0,
+            axes: axes.map(|[x, y, z]| [x, y, z, 0.0]),
+            semi_axes: semi_axes.map(|length| length.min(LARGEST)),
+            padding_of_semi_axes: 0.0,
+        }
+    }
+}
+
+/// A shape that a shader has projected to camera space: `SlcProjected`, 64 bytes.
+///
+/// What the kernels of bounds write and those of culling read, in the order of the lights. To read it back, or to size
+/// a buffer. A shape that reaches nothing has a `near` greater than its `far`.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuProjected {
+    /// M₁₁, M₂₁, M₁₂, M₂₂; offset 0.
+    pub x_and_y_axes: [f32; 4],
+    /// M₁₃, M₂₃, m; offset 16.
+    pub z_axis: [f32; 3],
+    /// The least depth; offset 28.
+    pub near: f32,
+    /// Mc′, the centre of the unit sphere; offset 32.
+    pub center: [f32; 3],
+    /// The greatest depth; offset 44.
+    pub far: f32,
+    /// The least and the greatest x/z, and the same of y/z; offset 48.
+    pub slopes: [f32; 4],
 }
