@@ -1,30 +1,40 @@
 //! Lists through blocks and in lanes are those of the scalar test, and hold every light that a receiver accepts.
 
+use std::marker::PhantomData;
+
 use fastrand::Rng;
 use stochastic_light_culling::{
-    Blind, ConstantLobe, LightLists, Lobe, LobeFamily, ReceiverCluster, ReceiverCuller, Roulette,
-    ShadingBatch, TileGrid, TileProbability, TileReceivers, Vpl, WeightedLists, glam::Vec3,
+    Blind, ConstantLobe, Dielectric, Ggx, GgxLobe, Incidence, LambertLobe, LightLists, Lobe,
+    LobeFamily, ReceiverCluster, ReceiverCuller, ReceiverLobe, Roulette, Schlick, ShadingBatch,
+    TileGrid, TileProbability, TileReceivers, Vpl, WeightedLists, glam::Vec3,
 };
 
-use crate::scene::{Pixel, Surfaces, lights};
+use crate::scene::{Pixel, Surfaces, direction, lights};
 
 /// The kinds of receivers: the family of a pixel, and its value towards a light.
-pub struct Receivers<F, V> {
-    family: fn(&Pixel, &mut Rng) -> (F, V),
+struct Receivers<F, M, V> {
+    family: M,
     value: fn(&V, Vec3) -> f32,
+    kinds: PhantomData<F>,
 }
 
-fn blind() -> Receivers<Blind, ()> {
+/// The family of a pixel, and what its value is computed from.
+trait Family<F, V>: Fn(&Pixel, &mut Rng) -> (F, V) {}
+
+impl<F, V, M: Fn(&Pixel, &mut Rng) -> (F, V)> Family<F, V> for M {}
+
+fn blind() -> Receivers<Blind, impl Family<Blind, ()>, ()> {
     Receivers {
-        family: |_, _| (Blind, ()),
+        family: |_: &Pixel, _: &mut Rng| (Blind, ()),
         value: |(), _| 1.0,
+        kinds: PhantomData,
     }
 }
 
 /// Compares the lists of random scenes. Returns how many pairs were accepted, and how many pairs lists held.
-fn check<L: Lobe + Clone, F: LobeFamily, V>(
+fn check<L: Lobe + Clone, F: LobeFamily, M: Family<F, V>, V>(
     lobe: fn(&mut Rng) -> L,
-    receivers: &Receivers<F, V>,
+    receivers: &Receivers<F, M, V>,
     seed: u64,
     scenes: u32,
 ) -> [u64; 2] {
@@ -135,6 +145,71 @@ fn check<L: Lobe + Clone, F: LobeFamily, V>(
         }
     }
     counts
+}
+
+fn roughness(rng: &mut Rng, least: f32) -> Ggx {
+    let exponent = least.log10() * rng.f32();
+    Ggx::new(10_f32.powf(exponent).clamp(least, 1.0)).expect("in range")
+}
+
+fn glossy_light(rng: &mut Rng) -> GgxLobe<Schlick> {
+    let incidence = Incidence {
+        normal: direction(rng),
+        incoming: direction(rng),
+    };
+    let fresnel = Schlick::new(rng.f32()).expect("in range");
+    GgxLobe::new(roughness(rng, 1e-3), fresnel, incidence)
+}
+
+/// Receivers with lobes of one kind, `lobe` of a pixel's incidence.
+fn receivers_of<R: ReceiverLobe>(
+    lobe: fn(Incidence, &mut Rng) -> R,
+) -> Receivers<R::Family, impl Family<R::Family, R>, R> {
+    Receivers {
+        family: move |pixel: &Pixel, rng: &mut Rng| {
+            let lobe = lobe(pixel.incidence, rng);
+            (lobe.family(), lobe)
+        },
+        value: R::value,
+        kinds: PhantomData,
+    }
+}
+
+#[test]
+fn glossy_lights_on_blind_and_diffuse_receivers() {
+    let [accepted, _] = check(glossy_light, &blind(), 7, cases(20));
+    assert!(accepted > 1_000, "{accepted}");
+    let lambert = |incidence: Incidence, rng: &mut Rng| {
+        // One in four is black.
+        let albedo = (rng.f32() - 0.25).max(0.0);
+        LambertLobe::new(albedo, incidence.normal).expect("in range")
+    };
+    let [accepted, listed] = check(glossy_light, &receivers_of(lambert), 8, cases(20));
+    println!("{accepted} accepted, {listed} listed");
+    assert!(accepted > 1_000, "{accepted}");
+}
+
+#[test]
+fn glossy_lights_on_glossy_receivers() {
+    let metal = |incidence: Incidence, rng: &mut Rng| {
+        let fresnel = Schlick::new(rng.f32()).expect("in range");
+        GgxLobe::new(roughness(rng, 3e-3), fresnel, incidence)
+    };
+    let [accepted, listed] = check(glossy_light, &receivers_of(metal), 9, cases(20));
+    println!("{accepted} accepted, {listed} listed");
+    assert!(accepted > 1_000, "{accepted}");
+    let plastic = |incidence: Incidence, rng: &mut Rng| {
+        let fresnel = Dielectric::new(1.1 + rng.f32()).expect("in range");
+        GgxLobe::new(roughness(rng, 3e-3), fresnel, incidence).separable()
+    };
+    let [accepted, _] = check(glossy_light, &receivers_of(plastic), 10, cases(20));
+    assert!(accepted > 200, "{accepted}");
+}
+
+/// So many scenes, or as many as `SCENES` says.
+fn cases(scenes: u32) -> u32 {
+    let wanted = std::env::var("SCENES").ok();
+    wanted.map_or(scenes, |wanted| wanted.parse().expect("a number"))
 }
 
 #[test]

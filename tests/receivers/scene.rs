@@ -15,13 +15,21 @@ pub struct Surfaces {
 #[derive(Clone, Copy)]
 pub struct Pixel {
     pub position: Vec3,
-    #[expect(dead_code, reason = "of receivers with lobes")]
     pub incidence: Incidence,
     /// Near or far surfaces of a tile.
     pub interval: u32,
 }
 
 pub const EYE: Vec3 = Vec3::new(0.0, 0.0, 12.0);
+
+pub fn direction(rng: &mut Rng) -> Direction {
+    loop {
+        let v = Vec3::from_array([(); 3].map(|()| 2.0 * rng.f32() - 1.0));
+        if (0.01..1.0).contains(&v.length_squared()) {
+            return Direction::new(v).expect("not zero");
+        }
+    }
+}
 
 impl Surfaces {
     /// A floor with waves, and in front of it some balls.
