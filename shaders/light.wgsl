@@ -83,7 +83,7 @@ fn slc_stirred(words: vec3u) -> vec2u {
 }
 
 /// Pays for √(Φ/(δξ)): three roots, a product and a quotient.
-const SLC_SCALE_ULPS: f32 = 20.0;
+const SLC_SCALE_ULPS: f32 = 24.0;
 
 /// The scale √(Φ/(δξ)) of a light's unit bound, rounded up: `Roulette::scale`. Zero for Φ = 0, and else from
 /// 10⁻¹⁸ to 10¹⁸.

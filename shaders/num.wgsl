@@ -24,6 +24,11 @@ fn slc_round_down(x: f32, ulps: f32) -> f32 {
     return x * (1.0 - (ulps + 2.0) * SLC_ULP);
 }
 
+/// `v` itself, whose components are less than SLC_FAR. A compiler that reorders sums takes none apart that is clamped.
+fn slc_kept(v: vec3f) -> vec3f {
+    return clamp(v, vec3f(-SLC_FAR), vec3f(SLC_FAR));
+}
+
 /// x⁵
 fn slc_fifth_power(x: f32) -> f32 {
     let squared = x * x;

@@ -93,7 +93,9 @@ fn slc_project(bound: SlcBound, camera: SlcCamera) -> SlcProjected {
         return slc_nothing();
     }
     let view = transpose(mat3x3f(camera.right, camera.up, camera.forward));
-    let center = view * ((bound.light - camera.anchor) + bound.offset) + camera.image;
+    // Far from the origin, the sum of light and offset would lose what the light is away from the anchor.
+    let away_from_anchor = slc_kept(bound.light - camera.anchor);
+    let center = view * (away_from_anchor + bound.offset) + camera.image;
     let away = abs(center.x) + abs(center.y) + abs(center.z);
     if max(longest, away) > SLC_LARGEST_LENGTH {
         return slc_everywhere();

@@ -60,6 +60,41 @@ fn all_names_have_the_prefix_and_nothing_is_bound() {
     }
 }
 
+/// Each line of the table in the documentation is a constant of the file that it names, with that value, and there are no
+/// other budgets.
+#[test]
+fn budgets_are_those_that_are_counted() {
+    let page = include_str!("../../docs/rounding.md");
+    let files = [
+        ("light.wgsl", LIGHT),
+        ("bound.wgsl", BOUND),
+        ("tight.wgsl", TIGHT),
+        ("project.wgsl", PROJECT),
+    ];
+    let rows = page.lines().filter(|line| line.starts_with("| `SLC_"));
+    let mut counted = 0;
+    for row in rows {
+        let cells: Vec<_> = row
+            .split('|')
+            .map(|cell| cell.trim().trim_matches('`'))
+            .collect();
+        let [_, name, value, file, ..] = cells[..] else {
+            panic!("{row}");
+        };
+        let (_, text) = files
+            .iter()
+            .find(|(known, _)| *known == file)
+            .expect("a file");
+        assert!(
+            text.contains(&format!("const {name}: f32 = {value}.0;")),
+            "{row}"
+        );
+        counted += 1;
+    }
+    let texts = [NUM, LOBE, LIGHT, BOUND, TIGHT, PROJECT, TOUCH, VIEW].concat();
+    assert_eq!(texts.matches("_ULPS: f32 = ").count(), counted);
+}
+
 #[test]
 fn the_table_has_the_size_that_the_text_expects() {
     let text = format!("{NUM}{LOBE}{BOUND}{TIGHT}");
