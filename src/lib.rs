@@ -334,9 +334,10 @@ pub use bound::{
 };
 #[cfg(feature = "cull")]
 pub use cull::{
-    BatchBuilder, BlockEstimates, CullCounters, Culler, Estimate, LightBatch, LightLists,
-    PointBlock, RadianceEstimator, Receiver, ReceiverBlock, ReceiverCuller, ShadedLight,
-    ShadedPoint, ShadingBatch, TileDepths, TileReceivers, WeightedList, WeightedLists,
+    AtPoint, AtReceiver, BatchBuilder, BlockEstimates, CullCounters, Culler, Decision, Estimate,
+    InList, LightBatch, LightLists, PointBlock, PointDecision, RadianceEstimator, Receiver,
+    ReceiverBlock, ReceiverCuller, ShadedLight, ShadedPoint, ShadingBatch, TileDepths,
+    TileReceivers, WeightedList, WeightedLists,
 };
 #[cfg(feature = "wgsl")]
 pub use interop::wgsl;

@@ -61,7 +61,7 @@ pub use culler::{CullCounters, Culler};
 pub use lists::LightLists;
 pub use receivers::{ReceiverCuller, TileReceivers, WeightedList, WeightedLists};
 pub use shading::{
-    BlockEstimates, Estimate, PointBlock, RadianceEstimator, Receiver, ReceiverBlock, ShadedLight,
-    ShadedPoint, ShadingBatch,
+    AtPoint, AtReceiver, BlockEstimates, Decision, Estimate, InList, PointBlock, PointDecision,
+    RadianceEstimator, Receiver, ReceiverBlock, ShadedLight, ShadedPoint, ShadingBatch,
 };
 pub use tile_depths::TileDepths;

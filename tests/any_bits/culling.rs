@@ -4,10 +4,11 @@
 use std::fmt::Debug;
 
 use stochastic_light_culling::{
-    AnyCamera, BatchBuilder, Bounded, BoxTest, Camera, Culler, DepthInterval, Direction, Ellipsoid,
-    Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, Lobe, NoFresnel, Project,
-    ProjectedBound, Projection, RadianceEstimator, Receiver, ReceiverBlock, Roulette, Seed,
-    ShadedPoint, ShadingBatch, Sphere, TileDepths, TileGrid, TileRectangle, Vpl, Xi, glam::Mat3,
+    AnyCamera, BatchBuilder, Bounded, BoxTest, Camera, Culler, Decision, DepthInterval, Direction,
+    Ellipsoid, Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, Lobe, NoFresnel,
+    Project, ProjectedBound, Projection, RadianceEstimator, Receiver, ReceiverBlock, Roulette,
+    Seed, ShadedPoint, ShadingBatch, Sphere, TileDepths, TileGrid, TileRectangle, Vpl,
+    WeightedList, Xi, glam::Mat3,
 };
 use support::with_camera;
 
@@ -222,19 +223,39 @@ fn estimates<L: Lobe + Copy>(bits: &mut Bits, roulette: &Roulette, xi: Xi, light
         position: point.position,
         lobe: *lobe,
     });
-    if let Some(block) = ReceiverBlock::take(&mut receivers.clone()) {
-        estimator.reflected_at_block(&batch, &list, &block, |estimates, reflected| {
+    let receivers: Vec<_> = receivers.collect();
+    reflect(&estimator, &batch, &list[..], &receivers);
+    let estimator = RadianceEstimator::aware(roulette).with_lanes(bits.byte().into());
+    reflect(&estimator, &batch, &list[..], &receivers);
+    let weights: Vec<f32> = list.iter().map(|_| bits.number()).collect();
+    let estimator = RadianceEstimator::listed().with_lanes(bits.byte().into());
+    let list = WeightedList {
+        lights: &list,
+        weights: &weights,
+    };
+    reflect(&estimator, &batch, list, &receivers);
+}
+
+/// Receivers reflect what is no NaN, as long as what arrives is finite.
+fn reflect<L: Lobe + Copy, D: Decision>(
+    estimator: &RadianceEstimator<D>,
+    batch: &ShadingBatch<L>,
+    list: D::List<'_>,
+    receivers: &[Receiver<L>],
+) {
+    if let Some(block) = ReceiverBlock::take(&mut receivers.iter().copied()) {
+        estimator.reflected_at_block(batch, list, &block, |estimates, reflected| {
             for (radiance, reflected) in estimates.radiance.iter().zip(reflected) {
                 assert!(radiance.is_infinite() || *reflected >= 0.0, "{reflected}");
+                assert!(*radiance >= 0.0, "{radiance}");
             }
         });
     }
-    let lists = receivers.map(|receiver| (receiver, &list[..]));
-    estimator.fold_reflected_at_points(&batch, lists, (), |(), _, estimate, reflected| {
-        assert!(
-            estimate.radiance.is_infinite() || reflected >= 0.0,
-            "{reflected}"
-        );
+    let lists = receivers.iter().map(|receiver| (*receiver, list));
+    estimator.fold_reflected_at_points(batch, lists, (), |(), _, estimate, reflected| {
+        let radiance = estimate.radiance;
+        assert!(radiance.is_infinite() || reflected >= 0.0, "{reflected}");
+        assert!(radiance > 0.0, "{radiance}");
     });
 }
 

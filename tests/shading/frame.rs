@@ -2,14 +2,16 @@
 
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    Estimate, Fresnel, Lobe, PointBlock, RadianceEstimator, Roulette, ShadedPoint, ShadingBatch,
-    Vpl, Xi, glam::Vec3,
+    AtPoint, Estimate, Fresnel, Lobe, PointBlock, PointDecision, Roulette, ShadedPoint,
+    ShadingBatch, Vpl, Xi, glam::Vec3,
 };
 use support::{
     generators::{Lit, log_uniform, unit_vector},
     parts::{Parts, parts},
     reference::Vector,
 };
+
+use crate::scalar::{Scalar, weights};
 
 /// Where a point is, seen from a light.
 #[derive(Clone, Copy, Debug)]
@@ -160,39 +162,89 @@ pub fn bits(point: usize, estimate: &Estimate) -> (usize, u32, [u32; 6]) {
 
 pub type Accepted = Vec<(usize, u32, [u32; 6])>;
 
+/// What a light sends to a point.
+pub struct Arrival {
+    /// The place of the light in the list.
+    pub turn: usize,
+    light: u32,
+    pub xi: Xi,
+    pub intensity: f32,
+    /// The squared distance, or the least one.
+    pub squared: f32,
+    pub direction: Vec3,
+}
+
+impl Arrival {
+    /// As `bits` gives the estimate `radiance` of it.
+    pub fn bits(&self, point: usize, radiance: f32) -> (usize, u32, [u32; 6]) {
+        let [x, y, z] = self.direction.to_array();
+        let numbers = [radiance, self.intensity, self.squared, x, y, z];
+        (point, self.light, numbers.map(f32::to_bits))
+    }
+}
+
 impl Frame {
-    /// What the point accepts of `list`, by scalar functions.
-    pub fn scalar<L: Lobe>(&self, lights: &[(Vpl<L>, Xi)], point: usize, list: &[u32]) -> Accepted {
-        let ShadedPoint {
-            position, normal, ..
-        } = self.points[point];
-        let mut accepted = Vec::new();
-        for i in list {
-            let (light, xi) = &lights[*i as usize];
-            if normal.dot(position - light.position()) > 0.0 {
-                continue;
-            }
-            let (direction, squared) = light.direction_to(position);
-            let squared = if squared < self.least_distance_squared {
-                self.least_distance_squared
-            } else {
-                squared
-            };
-            let intensity = light.radiant_intensity(direction);
-            let radiance = self.roulette.estimate(intensity, squared, *xi);
-            let accepts = self.roulette.accepts(intensity, squared, *xi);
-            assert_eq!(accepts, radiance > 0.0, "{intensity} {squared} {xi:?}");
-            if accepts {
-                let (x, y, z) = direction.into();
-                let numbers = [radiance, intensity, squared, x, y, z];
-                accepted.push((point, *i, numbers.map(f32::to_bits)));
-            }
-        }
-        accepted
+    /// What each light of `list` sends to the point, by scalar functions, but for those below its horizon.
+    pub fn arrivals<'l, L: Lobe>(
+        &'l self,
+        lights: &'l [(Vpl<L>, Xi)],
+        point: ShadedPoint,
+        list: &'l [u32],
+    ) -> impl Iterator<Item = Arrival> + 'l {
+        let ShadedPoint { position, normal } = point;
+        let above = move |i: &u32| {
+            let way = position - lights[*i as usize].0.position();
+            let is_below = normal.dot(way) > 0.0;
+            !is_below
+        };
+        (0..)
+            .zip(list)
+            .filter(move |(_, i)| above(i))
+            .map(move |(turn, i)| {
+                let (light, xi) = &lights[*i as usize];
+                let (direction, squared) = light.direction_to(position);
+                Arrival {
+                    turn,
+                    light: *i,
+                    xi: *xi,
+                    intensity: light.radiant_intensity(direction),
+                    squared: if squared < self.least_distance_squared {
+                        self.least_distance_squared
+                    } else {
+                        squared
+                    },
+                    direction,
+                }
+            })
+    }
+
+    /// What the point accepts of `list` with these `weights`, by scalar functions.
+    pub fn scalar<D: Scalar, L: Lobe>(
+        &self,
+        lights: &[(Vpl<L>, Xi)],
+        point: usize,
+        list: &[u32],
+        weights: &[f32],
+    ) -> Accepted {
+        let arrivals = self.arrivals(lights, self.points[point], list);
+        let accepted = arrivals.filter_map(|arrival| {
+            let weight = weights[arrival.turn];
+            let [radiance, _] = D::estimate(&self.roulette, &arrival, weight, 1.0)?;
+            Some(arrival.bits(point, radiance))
+        });
+        accepted.collect()
     }
 
     /// Whether vectors of every width find what scalar functions find.
     pub fn same<L: Lobe + Copy>(&self, lobe: impl Fn(&Parts) -> L) -> Result<usize, TestCaseError> {
+        self.same_by::<AtPoint, L>(lobe)
+    }
+
+    /// Whether they do with any way to decide.
+    pub fn same_by<D: Scalar + PointDecision, L: Lobe + Copy>(
+        &self,
+        lobe: impl Fn(&Parts) -> L,
+    ) -> Result<usize, TestCaseError> {
         let light = |p: &Parts| (Vpl::new(p.position, p.flux, lobe(p)).unwrap(), p.xi);
         let lights: Vec<_> = self.lights.iter().map(light).collect();
         let mut batch = ShadingBatch::new();
@@ -211,24 +263,27 @@ impl Frame {
         prop_assert_eq!(batch.len(), lights.len());
 
         // A list for each point: from none to all lights.
-        let list_of = |point: usize| &self.list[..(point * 7) % (self.list.len() + 1)];
+        let weights = weights(&self.list);
+        let len_of = |point: usize| (point * 7) % (self.list.len() + 1);
         let points = 0..self.points.len();
+        let accepted = |i, len| self.scalar::<D, L>(&lights, i, &self.list[..len], &weights[..len]);
         let expected: Accepted = points
             .clone()
-            .flat_map(|i| self.scalar(&lights, i, list_of(i)))
+            .flat_map(|i| accepted(i, len_of(i)))
             .collect();
         let shared: Vec<Accepted> = points
             .clone()
-            .map(|i| self.scalar(&lights, i, &self.list))
+            .map(|i| accepted(i, self.list.len()))
             .collect();
+        let list_of = |len: usize| D::list(&self.list[..len], &weights[..len]);
 
         for lanes in [16, 8, 4] {
-            let estimator = RadianceEstimator::new(&self.roulette)
+            let estimator = D::estimator(&self.roulette)
                 .with_lanes(lanes)
                 .with_least_distance_squared(self.least_distance_squared)
                 .unwrap();
             let mut found = Vec::new();
-            let lists = points.clone().map(|i| (self.points[i], list_of(i)));
+            let lists = points.clone().map(|i| (self.points[i], list_of(len_of(i))));
             estimator.at_points(&batch, lists, |i, estimate| found.push(bits(i, estimate)));
             prop_assert_eq!(&found, &expected, "{} lanes, by lights", lanes);
 
@@ -236,7 +291,8 @@ impl Frame {
             let mut rest = self.points.iter().copied();
             let mut start = 0;
             while let Some(block) = PointBlock::take(&mut rest) {
-                estimator.at_block(&batch, &self.list, &block, |estimates| {
+                let list = list_of(self.list.len());
+                estimator.at_block(&batch, list, &block, |estimates| {
                     assert_ne!(estimates.accepted, 0);
                     for i in 0..PointBlock::LEN {
                         let accepted = estimates.accepted >> i & 1 != 0;

@@ -3,9 +3,9 @@
 
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    ConstantLobe, Dielectric, Direction, Ggx, GgxLobe, Incidence, LambertLobe, LtcLobe, NoFresnel,
-    PhongLobe, RadianceEstimator, Roulette, Schlick, ShadedPoint, ShadingBatch, SphericalGaussian,
-    SpotLobe, Vpl, Xi, glam::Vec3,
+    AtPoint, ConstantLobe, Dielectric, Direction, Estimate, Ggx, GgxLobe, InList, Incidence,
+    LambertLobe, LtcLobe, NoFresnel, PhongLobe, PointBlock, RadianceEstimator, Roulette, Schlick,
+    ShadedPoint, ShadingBatch, SphericalGaussian, SpotLobe, Vpl, WeightedList, Xi, glam::Vec3,
 };
 use support::{
     generators::{self, cases, log_uniform, unit_vector},
@@ -13,8 +13,10 @@ use support::{
     reference::MaskedAlone,
 };
 
+mod clusters;
 mod frame;
 mod receivers;
+mod scalar;
 
 use frame::{Frame, bits, frame};
 
@@ -58,6 +60,12 @@ proptest! {
             LtcLobe::new(Ggx::new(light.roughness).unwrap(), schlick, light.incidence())
         })?;
         frame.same(|light| Windowed(light.lit.normal))?;
+    }
+
+    #[test]
+    fn listed_lights(frame in frame()) {
+        frame.same_by::<InList, _>(|light| light.ggx(Coat(light.share)))?;
+        frame.same_by::<InList, _>(|_| ConstantLobe)?;
     }
 
     /// Directions have unit length wherever squared distances are normal numbers, and are never longer.
@@ -114,7 +122,7 @@ fn lights_at_the_horizon_are_not_taken_for_dark() {
         let lists = frame.points.iter().map(|point| (*point, &frame.list[..]));
         let estimator = RadianceEstimator::new(&roulette);
         estimator.at_points(&batch, lists, |i, estimate| found.push(bits(i, estimate)));
-        let expected = (0..64).flat_map(|i| frame.scalar(&lights, i, &[0]));
+        let expected = (0..64).flat_map(|i| frame.scalar::<AtPoint, _>(&lights, i, &[0], &[1.0]));
         assert_eq!(found, expected.collect::<Vec<_>>());
         lit += found.len();
     }
@@ -161,4 +169,32 @@ fn an_index_of_no_light_panics() {
     let estimator = RadianceEstimator::new(&Roulette::new(0.01).unwrap());
     let point = ShadedPoint::from(Vec3::ZERO);
     estimator.at_points(&batch, [(point, &[0][..])], |_, _| ());
+}
+
+/// A missing weight does not pass for an answer: not in the middle of a vector, nor past it.
+#[test]
+fn a_light_without_a_weight_panics() {
+    let mut batch = ShadingBatch::new();
+    batch.push(
+        &Vpl::new(Vec3::Z, 1.0, ConstantLobe).unwrap(),
+        Xi::new(1.0).unwrap(),
+    );
+    let (estimator, point) = (RadianceEstimator::listed(), ShadedPoint::from(Vec3::ZERO));
+    let (lights, weights) = ([0; 40], [1.0; 40]);
+    let sum = |count: usize, weight_count: usize| {
+        let list = WeightedList {
+            lights: &lights[..count],
+            weights: &weights[..weight_count],
+        };
+        let block = PointBlock::take(&mut [point].into_iter()).unwrap();
+        let mut of_block = 0.0;
+        estimator.at_block(&batch, list, &block, |found| of_block += found.radiance[0]);
+        let add = |sum, _, estimate: &Estimate| sum + estimate.radiance;
+        let of_point = estimator.fold_at_points(&batch, [(point, list)], 0.0, add);
+        assert_eq!(of_block, of_point);
+    };
+    sum(40, 40);
+    for (lights, weights) in [(1, 0), (3, 2), (40, 39)] {
+        std::panic::catch_unwind(|| sum(lights, weights)).unwrap_err();
+    }
 }

@@ -2,14 +2,15 @@
 
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    Dielectric, Direction, Estimate, Ggx, GgxLobe, Incidence, LambertLobe, Lobe, LtcLobe,
-    NoFresnel, PointBlock, RadianceEstimator, Receiver, ReceiverBlock, Roulette, Schlick,
-    ShadedPoint, ShadingBatch, Vpl, Xi, glam::Vec3,
+    AtPoint, AtReceiver, Dielectric, Direction, Estimate, Ggx, GgxLobe, InList, Incidence,
+    LambertLobe, Lobe, LtcLobe, NoFresnel, PointBlock, RadianceEstimator, Receiver, ReceiverBlock,
+    Roulette, Schlick, ShadedPoint, ShadingBatch, Vpl, Xi, glam::Vec3,
 };
 use support::generators::cases;
 use support::parts::{Coat, Parts, Windowed};
 
 use crate::frame::{Frame, bits, frame};
+use crate::scalar::{Scalar, weights};
 
 /// A light that a receiver accepts, as `bits` gives it, and the bits of what is reflected.
 type Reflected = Vec<((usize, u32, [u32; 6]), u32)>;
@@ -19,22 +20,41 @@ proptest! {
 
     #[test]
     fn reflect_what_they_do_one_by_one(frame in frame()) {
-        same(&frame, |of| of.ggx(Schlick::new(of.share).unwrap()))?;
-        same(&frame, |of| of.ggx(Dielectric::new(0.5 + of.share).unwrap()))?;
-        same(&frame, |of| of.ggx(Coat(of.share)))?;
-        same(&frame, |of| of.brushed(NoFresnel))?;
-        same(&frame, |of| LambertLobe::new(of.share, of.lit.normal).unwrap())?;
-        same(&frame, |of| Windowed(of.lit.normal))?;
-        same(&frame, |of| {
+        same_glossy::<AtPoint>(&frame)?;
+        same::<AtPoint, _>(&frame, |of| of.ggx(Dielectric::new(0.5 + of.share).unwrap()))?;
+        same::<AtPoint, _>(&frame, |of| of.brushed(NoFresnel))?;
+        same::<AtPoint, _>(&frame, |of| LambertLobe::new(of.share, of.lit.normal).unwrap())?;
+        same::<AtPoint, _>(&frame, |of| Windowed(of.lit.normal))?;
+        same::<AtPoint, _>(&frame, |of| {
             let ggx = Ggx::new(of.roughness).unwrap();
             LtcLobe::new(ggx, Schlick::new(of.share).unwrap(), of.incidence())
         })?;
     }
+
+    #[test]
+    fn decide_as_they_do_one_by_one(frame in frame()) {
+        same_glossy::<AtReceiver>(&frame)?;
+        same::<AtReceiver, _>(&frame, |of| Windowed(of.lit.normal))?;
+    }
+
+    #[test]
+    fn weigh_as_they_do_one_by_one(frame in frame()) {
+        same_glossy::<InList>(&frame)?;
+    }
+}
+
+/// With a lobe that is numbers alone, and one with a caller's Fresnel factor.
+fn same_glossy<D: Scalar>(frame: &Frame) -> Result<(), TestCaseError> {
+    same::<D, _>(frame, |of| of.ggx(Schlick::new(of.share).unwrap()))?;
+    same::<D, _>(frame, |of| of.ggx(Coat(of.share)))
 }
 
 /// Whether receivers at the points of `frame`, with lobes of its lights' parts, reflect the same in vectors of
 /// every width.
-fn same<R: Lobe + Copy>(frame: &Frame, lobe: impl Fn(&Parts) -> R) -> Result<(), TestCaseError> {
+fn same<D: Scalar, R: Lobe + Copy>(
+    frame: &Frame,
+    lobe: impl Fn(&Parts) -> R,
+) -> Result<(), TestCaseError> {
     if frame.lights.is_empty() {
         return Ok(());
     }
@@ -53,38 +73,35 @@ fn same<R: Lobe + Copy>(frame: &Frame, lobe: impl Fn(&Parts) -> R) -> Result<(),
     let mut batch = ShadingBatch::new();
     batch.extend(lights.iter().map(|(light, xi)| (light, *xi)));
 
-    let list_of = |i: usize| &frame.list[..(i * 7) % (frame.list.len() + 1)];
-    let one_by_one = |i: usize, list: &[u32]| -> Reflected {
-        let Receiver { position, lobe } = &receivers[i];
+    let weights = weights(&frame.list);
+    let len_of = |i: usize| (i * 7) % (frame.list.len() + 1);
+    let list_of = |len: usize| D::list(&frame.list[..len], &weights[..len]);
+    let one_by_one = |i: usize, len: usize| -> Reflected {
+        let Receiver { position, lobe } = receivers[i];
         let normal = lobe.horizon_normal().map_or(Vec3::ZERO, Vec3::from);
-        let at = Frame {
-            points: vec![
-                ShadedPoint {
-                    position: *position,
-                    normal
-                };
-                i + 1
-            ],
-            ..frame.clone()
-        };
-        let accepted = at.scalar(&lights, i, list).into_iter();
-        let reflected = accepted.map(|accepted| {
-            let [radiance, _, _, x, y, z] = accepted.2.map(f32::from_bits);
-            let reflected = radiance * lobe.value(-Vec3::new(x, y, z));
-            (accepted, reflected.to_bits())
+        let point = ShadedPoint { position, normal };
+        let arrivals = frame.arrivals(&lights, point, &frame.list[..len]);
+        let accepted = arrivals.filter_map(|arrival| {
+            let value = lobe.value(-arrival.direction);
+            let weight = weights[arrival.turn];
+            let [radiance, reflected] = D::estimate(&frame.roulette, &arrival, weight, value)?;
+            Some((arrival.bits(i, radiance), reflected.to_bits()))
         });
-        reflected.collect()
+        accepted.collect()
     };
     let turns = 0..receivers.len();
-    let expected: Vec<Reflected> = turns.clone().map(|i| one_by_one(i, list_of(i))).collect();
-    let shared: Vec<Reflected> = turns.clone().map(|i| one_by_one(i, &frame.list)).collect();
+    let expected: Vec<Reflected> = turns.clone().map(|i| one_by_one(i, len_of(i))).collect();
+    let shared: Vec<Reflected> = turns
+        .clone()
+        .map(|i| one_by_one(i, frame.list.len()))
+        .collect();
 
     for lanes in [16, 8, 4] {
-        let estimator = RadianceEstimator::new(&frame.roulette)
+        let estimator = D::estimator(&frame.roulette)
             .with_lanes(lanes)
             .with_least_distance_squared(frame.least_distance_squared)
             .unwrap();
-        let lists = turns.clone().map(|i| (receivers[i], list_of(i)));
+        let lists = turns.clone().map(|i| (receivers[i], list_of(len_of(i))));
         let push = |mut found: Reflected, i, estimate: &Estimate, reflected: f32| {
             found.push((bits(i, estimate), reflected.to_bits()));
             found
@@ -95,9 +112,11 @@ fn same<R: Lobe + Copy>(frame: &Frame, lobe: impl Fn(&Parts) -> R) -> Result<(),
         let mut found = vec![Vec::new(); receivers.len()];
         let (mut rest, mut start) = (receivers.iter().copied(), 0);
         while let Some(block) = ReceiverBlock::take(&mut rest) {
-            estimator.reflected_at_block(&batch, &frame.list, &block, |estimates, reflected| {
+            let list = list_of(frame.list.len());
+            estimator.reflected_at_block(&batch, list, &block, |estimates, reflected| {
                 for (i, reflected) in reflected.iter().enumerate() {
                     let accepted = estimates.accepted >> i & 1 != 0;
+                    assert_eq!(accepted, estimates.radiance[i] > 0.0);
                     assert!(accepted || reflected.to_bits() == 0, "{reflected}");
                 }
                 for (i, estimate) in estimates.iter() {

@@ -4,8 +4,10 @@ use fearless_simd::{Simd, SimdBase};
 use glam::Vec3;
 
 use super::batch::ShadingBatch;
-use super::kernel::{Evaluated, Frame, Lights, Points, ShadedLight};
+use super::decision::{Decision, Drawn, LightList};
+use super::kernel::{Evaluated, Lights, Points, Settings, ShadedLight};
 use super::point::{Estimate, ShadedPoint};
+use super::receiver::ReceiverLanes;
 use crate::cull::lanes::{LANES, Lanes, load, parts, store};
 use crate::num::{F32Lanes, Vector3};
 
@@ -127,6 +129,22 @@ impl BlockEstimates {
             .map(|i| (i, self.estimate(i)))
     }
 
+    /// Stores a part.
+    #[inline(always)]
+    pub(super) fn store<S: Simd>(&mut self, part: usize, evaluated: &Evaluated<S>) {
+        let arriving = &evaluated.arriving;
+        store(&mut self.radiance, part, evaluated.radiance);
+        store(&mut self.intensity, part, arriving.intensity);
+        store(&mut self.distance_squared, part, arriving.distance_squared);
+        let Vector3 { x, y, z } = arriving.direction;
+        for (lanes, vector) in self.direction.iter_mut().zip([x, y, z]) {
+            store(lanes, part, vector);
+        }
+        if let Some(sharpness) = arriving.sharpness {
+            store(&mut self.sharpness, part, sharpness);
+        }
+    }
+
     #[inline(always)]
     pub(super) fn estimate(&self, i: usize) -> Estimate {
         let [x, y, z] = &self.direction;
@@ -142,55 +160,60 @@ impl BlockEstimates {
 }
 
 /// Calls `each` with the lights of `list` that a point of `block` accepts, in the order of the list, and with
-/// what the points reflect of it: what `reflect` makes of a part.
+/// what the points reflect of it. `receivers_of` gives the receivers of a part.
 #[inline(always)]
-pub(super) fn evaluate_block<S: Simd, L: ShadedLight>(
+pub(super) fn evaluate_block<S: Simd, D: Decision, L: ShadedLight, R: ReceiverLanes<S>>(
     simd: S,
-    frame: &Frame,
+    settings: &Settings<D>,
     lights: &ShadingBatch<L>,
-    list: &[u32],
+    list: D::List<'_>,
     block: &PointBlock,
-    reflect: impl Fn(usize, &Evaluated<S>) -> F32Lanes<S>,
+    receivers_of: impl Fn(usize) -> R,
     mut each: impl FnMut(&BlockEstimates, &Lanes),
 ) {
     let mut estimates = BlockEstimates::NONE;
     let mut reflected = [0.0; LANES];
-    for light in list {
+    let list = list.with_any_weights();
+    for (turn, light) in list.lights.iter().enumerate() {
         let splat = Lights::broadcast(simd, lights, *light);
         estimates.light = *light;
         estimates.accepted = 0;
         for part in 0..parts::<S>() {
             let lobe = lights.lobes.get(*light as usize);
             let points = block.part(simd, part);
-            let evaluated = L::evaluate(
-                frame,
+            let arriving = L::arriving(
+                settings.least_distance_squared,
                 &splat,
                 #[inline(always)]
                 |_| lobe,
                 &points,
             );
-            let Some(evaluated) = evaluated else {
+            let decided = arriving.and_then(
+                #[inline(always)]
+                |arriving| {
+                    let weight = if D::HAS_WEIGHTS {
+                        list.weights[turn]
+                    } else {
+                        1.0
+                    };
+                    let drawn = Drawn {
+                        xi: splat.xi,
+                        weight: F32Lanes::new(simd, weight),
+                    };
+                    settings
+                        .decision
+                        .decide(arriving, drawn, &receivers_of(part))
+                },
+            );
+            let Some(evaluated) = decided else {
                 if parts::<S>() > 1 {
                     clear(&mut estimates, &mut reflected, part, S::f32s::LEN);
                 }
                 continue;
             };
             estimates.accepted |= evaluated.accepted << (part * S::f32s::LEN);
-            store(&mut reflected, part, reflect(part, &evaluated));
-            store(&mut estimates.radiance, part, evaluated.radiance);
-            store(&mut estimates.intensity, part, evaluated.intensity);
-            store(
-                &mut estimates.distance_squared,
-                part,
-                evaluated.distance_squared,
-            );
-            let Vector3 { x, y, z } = evaluated.direction;
-            for (lanes, vector) in estimates.direction.iter_mut().zip([x, y, z]) {
-                store(lanes, part, vector);
-            }
-            if let Some(sharpness) = evaluated.sharpness {
-                store(&mut estimates.sharpness, part, sharpness);
-            }
+            store(&mut reflected, part, evaluated.reflected);
+            estimates.store(part, &evaluated);
         }
         if estimates.accepted != 0 {
             each(&estimates, &reflected);

@@ -1,8 +1,8 @@
-//! The evaluation of one cluster at one point, in each lane.
+//! What a cluster sends to a point, in each lane.
 
-use fearless_simd::{Simd, SimdMask};
+use fearless_simd::Simd;
 
-use super::kernel::{Evaluated, Frame, Lights, Points, ShadedLight};
+use super::kernel::{Arriving, Lights, Points, ShadedLight};
 use crate::light::{Vsgl, Vsgls};
 use crate::num::{F32Lanes, Real, Vector3};
 
@@ -12,15 +12,15 @@ impl ShadedLight for Vsgl {
         1
     }
 
-    /// E is that of scalar code, and counts as the intensity of a light at unit distance. A cluster is not accepted
-    /// where its light arrives from below the point's horizon.
+    /// E is that of scalar code, and counts as the intensity of a light at unit distance. A cluster does not arrive
+    /// where its axis is below the point's horizon.
     #[inline(always)]
-    fn evaluate<'a, S: Simd>(
-        frame: &Frame,
+    fn arriving<'a, S: Simd>(
+        _: f32,
         lights: &Lights<F32Lanes<S>>,
         _: impl Fn(usize) -> Option<&'a Self>,
         points: &Points<F32Lanes<S>>,
-    ) -> Option<Evaluated<S>> {
+    ) -> Option<Arriving<S>> {
         let [x, y, z, sharpness, spread, ..] = lights.numbers;
         let clusters = Vsgls {
             position: lights.position,
@@ -30,20 +30,11 @@ impl ShadedLight for Vsgl {
             amplitude: lights.flux,
         };
         let incoming = clusters.incoming(points.position);
-        let irradiance = incoming.scalar_irradiance;
-        let one = irradiance.splat(1.0);
-        let is_above = !points.normal.dot(-incoming.axis).is_positive();
-        let is_accepted = frame.roulette.accepts_in_lanes(irradiance, one, lights.xi);
-        let accepted = is_above & is_accepted;
-        if !accepted.any_true() {
-            return None;
-        }
-        let radiance = frame.roulette.accepted_radiance(irradiance, one);
-        Some(Evaluated {
-            accepted: accepted.to_bitmask() as u32,
-            radiance: F32Lanes::select(accepted, radiance, radiance.zero()),
-            intensity: irradiance,
-            distance_squared: one,
+        let intensity = incoming.scalar_irradiance;
+        Some(Arriving {
+            may_be_lit: !points.normal.dot(-incoming.axis).is_positive(),
+            intensity,
+            distance_squared: intensity.splat(1.0),
             direction: -incoming.axis,
             sharpness: Some(incoming.sharpness),
         })

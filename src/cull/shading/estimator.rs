@@ -2,15 +2,15 @@ use fearless_simd::{Level, dispatch};
 
 use super::batch::ShadingBatch;
 use super::block::{BlockEstimates, PointBlock, evaluate_block};
-use super::kernel::{Evaluated, Frame, ShadedLight};
-use super::pairs::{NoReceivers, Receivers, fold_pairs};
+use super::decision::{AtPoint, AtReceiver, Decision, InList, PointDecision};
+use super::kernel::{Settings, ShadedLight};
+use super::pairs::{Receivers, fold_pairs};
 use super::point::{Estimate, ShadedPoint};
-use super::receiver::{Receiver, ReceiverBlock};
+use super::receiver::{NoReceivers, Receiver, ReceiverBlock};
 use crate::base::{Error, number_in};
 use crate::cull::culler::{at_most, widest};
 use crate::light::Roulette;
 use crate::lobe::Lobe;
-use crate::num::Real;
 
 /// Evaluates lists of lights, many at a time: acceptance, and the estimate of the radiance, of each light.
 ///
@@ -25,6 +25,17 @@ use crate::num::Real;
 /// There are two ways. Where points share a list, as those of a tile do, [`at_block`](Self::at_block) takes
 /// sixteen of them and is fastest. [`at_points`](Self::at_points) takes points with lists of their own, however
 /// short.
+///
+/// # What decides
+///
+/// | created by | a light counts | takes lists | δ is a radiance |
+/// |---|---|---|---|
+/// | [`new`](Self::new) | where it is accepted by the radiance that arrives, whatever the receiver | by bounds of lights, of a [`Culler`](crate::Culler) | that arrives |
+/// | [`aware`](Self::aware) | where it is accepted by the radiance that the receiver reflects | by receivers, of [`ReceiverCuller::cull`](crate::ReceiverCuller::cull) | at the eye |
+/// | [`listed`](Self::listed) | everywhere, times its weight in the list | drawn for all points of a tile, of [`ReceiverCuller::draw`](crate::ReceiverCuller::draw) | – |
+///
+/// List and estimator go together: with a list that was made for another way, or for another δ, the mean is wrong.
+/// An estimator is a few numbers, and is made in a few nanoseconds: each tile may have one with a δ of its own.
 ///
 /// Nothing allocates. A NaN comes only of what the scalar functions make NaN of.
 ///
@@ -76,19 +87,98 @@ use crate::num::Real;
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct RadianceEstimator {
-    frame: Frame,
+pub struct RadianceEstimator<D = AtPoint> {
+    settings: Settings<D>,
     level: Level,
 }
 
 impl RadianceEstimator {
-    /// Creates an estimator with the widest vectors of this processor. Without the feature `std` the processor
-    /// cannot be queried, and the vectors are those of the compilation target.
+    /// Creates an estimator that decides by the radiance that arrives, with the widest vectors of this processor.
+    /// Without the feature `std` the processor cannot be queried, and the vectors are those of the compilation
+    /// target.
     #[must_use]
     pub fn new(roulette: &Roulette) -> Self {
+        let roulette = *roulette;
+        Self::deciding(AtPoint { roulette })
+    }
+}
+
+impl RadianceEstimator<AtReceiver> {
+    /// Creates an estimator that decides by the radiance that a receiver reflects to the eye, of which δ is then
+    /// the scale. Otherwise as [`new`](RadianceEstimator::new).
+    ///
+    /// Lights are accepted that reflect much, and the estimate of what one reflects is never below δ. So glossy
+    /// receivers take few lights, and see no light that is much brighter than the others.
+    ///
+    /// [`BlockEstimates::radiance`] and [`Estimate::radiance`] are L/p here, too, so that other surfaces may reflect
+    /// them: a coat, or a colour.
+    ///
+    /// ```
+    /// use stochastic_light_culling::{
+    ///     Direction, LambertLobe, Lobe, RadianceEstimator, Receiver, Roulette, ShadingBatch, Vpl, Xi,
+    ///     glam::Vec3,
+    /// };
+    ///
+    /// let lobe = LambertLobe::new(0.5, Direction::Y)?;
+    /// let receiver = Receiver { position: Vec3::ZERO, lobe };
+    /// let lamp = Vpl::point(2.0 * Vec3::Y, 1.0)?;
+    /// let mut lights = ShadingBatch::new();
+    /// lights.push(&lamp, Xi::new(0.1)?);
+    ///
+    /// // It sends ¼ W/m², of which the receiver reflects 0.04 to the eye: an eighth of δ.
+    /// let reflected = 0.25 * lobe.value(Vec3::Y);
+    /// let estimator = RadianceEstimator::aware(&Roulette::new(8.0 * reflected)?);
+    /// let counts = |sum, _, _: &_, reflected| sum + reflected;
+    /// let sum = estimator.fold_reflected_at_points(&lights, [(receiver, &[0][..])], 0.0, counts);
+    /// assert_eq!(sum, 8.0 * reflected);
+    ///
+    /// // It is rejected with seven of eight ξ.
+    /// lights.set_xi(0, Xi::new(0.2)?);
+    /// let sum = estimator.fold_reflected_at_points(&lights, [(receiver, &[0][..])], 0.0, counts);
+    /// assert_eq!(sum, 0.0);
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
+    #[must_use]
+    pub fn aware(roulette: &Roulette) -> Self {
+        let roulette = *roulette;
+        Self::deciding(AtReceiver { roulette })
+    }
+}
+
+impl RadianceEstimator<InList> {
+    /// Creates an estimator that decides nothing: every light of a [`WeightedList`](crate::WeightedList) counts, with
+    /// its weight there. Otherwise as [`new`](RadianceEstimator::new).
+    ///
+    /// ```
+    /// use stochastic_light_culling::{
+    ///     PointBlock, RadianceEstimator, ShadingBatch, Vpl, WeightedList, Xi, glam::Vec3,
+    /// };
+    ///
+    /// // Two lamps, of which the second was drawn with the probability ¼. Their ξ have had their use.
+    /// let mut lights = ShadingBatch::new();
+    /// for height in [1.0, 2.0] {
+    ///     lights.push(&Vpl::point(height * Vec3::Y, 1.0)?, Xi::new(1.0)?);
+    /// }
+    /// let list = WeightedList { lights: &[0, 1], weights: &[1.0, 4.0] };
+    /// let block = PointBlock::take(&mut [Vec3::ZERO.into()].into_iter()).expect("one");
+    /// let mut irradiance = 0.0;
+    /// RadianceEstimator::listed().at_block(&lights, list, &block, |estimates| {
+    ///     irradiance += estimates.radiance[0];
+    /// });
+    /// assert_eq!(irradiance, 1.0 + 4.0 * 0.25);
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
+    #[must_use]
+    pub fn listed() -> Self {
+        Self::deciding(InList)
+    }
+}
+
+impl<D> RadianceEstimator<D> {
+    fn deciding(decision: D) -> Self {
         Self {
-            frame: Frame {
-                roulette: *roulette,
+            settings: Settings {
+                decision,
                 least_distance_squared: 0.0,
             },
             level: widest(),
@@ -106,9 +196,9 @@ impl RadianceEstimator {
     pub fn with_least_distance_squared(self, least: f32) -> Result<Self, Error> {
         let least = number_in("least squared distance", least, "in [0, ∞)", 0.0..=f32::MAX)?;
         Ok(Self {
-            frame: Frame {
+            settings: Settings {
                 least_distance_squared: least,
-                ..self.frame
+                ..self.settings
             },
             ..self
         })
@@ -123,7 +213,10 @@ impl RadianceEstimator {
             ..self
         }
     }
+}
 
+/// Points that are lit.
+impl<D: PointDecision> RadianceEstimator<D> {
     /// Evaluates the lights of `list` at the points of `block`. Calls `each` with every light that one of them
     /// accepts, in the order of the list.
     ///
@@ -132,29 +225,101 @@ impl RadianceEstimator {
     ///
     /// # Panics
     ///
-    /// If `list` holds an index of no light.
+    /// If `list` holds an index of no light, or has fewer weights than lights.
     #[inline]
     pub fn at_block<L: ShadedLight>(
         &self,
         lights: &ShadingBatch<L>,
-        list: &[u32],
+        list: D::List<'_>,
         block: &PointBlock,
         mut each: impl FnMut(&BlockEstimates),
     ) {
-        let frame = &self.frame;
+        let settings = &self.settings;
         dispatch!(self.level, simd => evaluate_block(
             simd,
-            frame,
+            settings,
             lights,
             list,
             block,
             #[inline(always)]
-            |_, arriving: &Evaluated<_>| arriving.radiance.zero(),
+            |_| NoReceivers,
             #[inline(always)]
             |estimates: &BlockEstimates, _: &[f32; PointBlock::LEN]| each(estimates),
         ));
     }
 
+    /// Evaluates at each of `points` the lights of its list. Calls `each` with the turn of the point, 0 for
+    /// the first, and the estimate of every light that it accepts: point by point, in the order of the lists.
+    ///
+    /// A vector holds lights of several points where lists are short.
+    ///
+    /// # Panics
+    ///
+    /// If a list holds an index of no light, or has fewer weights than lights.
+    #[inline]
+    pub fn at_points<'l, L: ShadedLight>(
+        &self,
+        lights: &ShadingBatch<L>,
+        points: impl IntoIterator<Item = (ShadedPoint, D::List<'l>)>,
+        mut each: impl FnMut(usize, &Estimate),
+    ) {
+        self.fold_at_points(lights, points, (), |(), turn, estimate| {
+            each(turn, estimate);
+        });
+    }
+
+    /// Folds what [`at_points`](Self::at_points) would report into a state, beginning with `init`, and returns
+    /// the last state.
+    ///
+    /// The state stays in registers, where what a closure borrows is in memory. This makes sums over long lists
+    /// faster.
+    ///
+    /// ```
+    /// use stochastic_light_culling::{
+    ///     ConstantLobe, RadianceEstimator, Roulette, ShadedPoint, ShadingBatch, Vpl, Xi, glam::Vec3,
+    /// };
+    ///
+    /// let mut lights = ShadingBatch::new();
+    /// lights.push(&Vpl::new(Vec3::Z, 1.0, ConstantLobe)?, Xi::new(1.0)?);
+    /// let estimator = RadianceEstimator::new(&Roulette::new(0.01)?);
+    /// let point = ShadedPoint::from(Vec3::ZERO);
+    /// let sum = estimator.fold_at_points(&lights, [(point, &[0, 0][..])], 0.0, |sum, _, estimate| {
+    ///     sum + estimate.radiance
+    /// });
+    /// assert_eq!(sum, 0.5 / std::f32::consts::PI);
+    /// # Ok::<(), stochastic_light_culling::Error>(())
+    /// ```
+    ///
+    /// # Panics
+    ///
+    /// If a list holds an index of no light, or has fewer weights than lights.
+    #[inline]
+    pub fn fold_at_points<'l, L: ShadedLight, A>(
+        &self,
+        lights: &ShadingBatch<L>,
+        points: impl IntoIterator<Item = (ShadedPoint, D::List<'l>)>,
+        init: A,
+        mut each: impl FnMut(A, usize, &Estimate) -> A,
+    ) -> A {
+        let settings = &self.settings;
+        let points = points.into_iter().map(
+            #[inline(always)]
+            |(point, list)| (point, (), list),
+        );
+        dispatch!(self.level, simd => fold_pairs::<_, D, L, NoReceivers, A>(
+            simd,
+            settings,
+            lights,
+            points,
+            init,
+            #[inline(always)]
+            |state, turn, estimate: &Estimate, _| each(state, turn, estimate),
+        ))
+    }
+}
+
+/// Receivers, which reflect light to the eye.
+impl<D: Decision> RadianceEstimator<D> {
     /// Evaluates the lights of `list` at the receivers of `block`. Calls `each` with every light that one of
     /// them accepts, in the order of the list, and with the radiance that each receiver reflects of it to the
     /// eye: the estimate of the radiance times the [`value`](Lobe::value) of the receiver's lobe towards the
@@ -202,95 +367,26 @@ impl RadianceEstimator {
     ///
     /// # Panics
     ///
-    /// If `list` holds an index of no light.
+    /// If `list` holds an index of no light, or has fewer weights than lights.
     #[inline]
     pub fn reflected_at_block<L: ShadedLight, R: Lobe>(
         &self,
         lights: &ShadingBatch<L>,
-        list: &[u32],
+        list: D::List<'_>,
         block: &ReceiverBlock<R>,
         mut each: impl FnMut(&BlockEstimates, &[f32; PointBlock::LEN]),
     ) {
-        let (frame, points, each) = (&self.frame, block.points(), &mut each);
+        let (settings, points, each) = (&self.settings, block.points(), &mut each);
         dispatch!(self.level, simd => evaluate_block(
             simd,
-            frame,
+            settings,
             lights,
             list,
             points,
             #[inline(always)]
-            |part, arriving: &Evaluated<_>| block.reflected(simd, part, arriving),
+            |part| block.part(simd, part),
             each,
         ));
-    }
-
-    /// Evaluates at each of `points` the lights of its list. Calls `each` with the turn of the point, 0 for
-    /// the first, and the estimate of every light that it accepts: point by point, in the order of the lists.
-    ///
-    /// A vector holds lights of several points where lists are short.
-    ///
-    /// # Panics
-    ///
-    /// If a list holds an index of no light.
-    #[inline]
-    pub fn at_points<'l, L: ShadedLight>(
-        &self,
-        lights: &ShadingBatch<L>,
-        points: impl IntoIterator<Item = (ShadedPoint, &'l [u32])>,
-        mut each: impl FnMut(usize, &Estimate),
-    ) {
-        self.fold_at_points(lights, points, (), |(), turn, estimate| {
-            each(turn, estimate);
-        });
-    }
-
-    /// Folds what [`at_points`](Self::at_points) would report into a state, beginning with `init`, and returns
-    /// the last state.
-    ///
-    /// The state stays in registers, where what a closure borrows is in memory. This makes sums over long lists
-    /// faster.
-    ///
-    /// ```
-    /// use stochastic_light_culling::{
-    ///     ConstantLobe, RadianceEstimator, Roulette, ShadedPoint, ShadingBatch, Vpl, Xi, glam::Vec3,
-    /// };
-    ///
-    /// let mut lights = ShadingBatch::new();
-    /// lights.push(&Vpl::new(Vec3::Z, 1.0, ConstantLobe)?, Xi::new(1.0)?);
-    /// let estimator = RadianceEstimator::new(&Roulette::new(0.01)?);
-    /// let point = ShadedPoint::from(Vec3::ZERO);
-    /// let sum = estimator.fold_at_points(&lights, [(point, &[0, 0][..])], 0.0, |sum, _, estimate| {
-    ///     sum + estimate.radiance
-    /// });
-    /// assert_eq!(sum, 0.5 / std::f32::consts::PI);
-    /// # Ok::<(), stochastic_light_culling::Error>(())
-    /// ```
-    ///
-    /// # Panics
-    ///
-    /// If a list holds an index of no light.
-    #[inline]
-    pub fn fold_at_points<'l, L: ShadedLight, A>(
-        &self,
-        lights: &ShadingBatch<L>,
-        points: impl IntoIterator<Item = (ShadedPoint, &'l [u32])>,
-        init: A,
-        mut each: impl FnMut(A, usize, &Estimate) -> A,
-    ) -> A {
-        let frame = &self.frame;
-        let points = points.into_iter().map(
-            #[inline(always)]
-            |(point, list)| (point, (), list),
-        );
-        dispatch!(self.level, simd => fold_pairs::<_, L, NoReceivers, A>(
-            simd,
-            frame,
-            lights,
-            points,
-            init,
-            #[inline(always)]
-            |state, turn, estimate: &Estimate, _| each(state, turn, estimate),
-        ))
     }
 
     /// Evaluates at each of `receivers` the lights of its list. Folds the accepted ones as
@@ -299,22 +395,22 @@ impl RadianceEstimator {
     ///
     /// # Panics
     ///
-    /// If a list holds an index of no light.
+    /// If a list holds an index of no light, or has fewer weights than lights.
     #[inline]
     pub fn fold_reflected_at_points<'l, L: ShadedLight, R: Lobe + Clone, A>(
         &self,
         lights: &ShadingBatch<L>,
-        receivers: impl IntoIterator<Item = (Receiver<R>, &'l [u32])>,
+        receivers: impl IntoIterator<Item = (Receiver<R>, D::List<'l>)>,
         init: A,
         mut each: impl FnMut(A, usize, &Estimate, f32) -> A,
     ) -> A {
-        let (frame, each) = (&self.frame, &mut each);
+        let (settings, each) = (&self.settings, &mut each);
         let receivers = receivers.into_iter().map(
             #[inline(always)]
             |(receiver, list)| (receiver.point(), receiver.lobe, list),
         );
         dispatch!(self.level, simd => {
-            fold_pairs::<_, L, Receivers<_, R>, A>(simd, frame, lights, receivers, init, each)
+            fold_pairs::<_, D, L, Receivers<_, R>, A>(simd, settings, lights, receivers, init, each)
         })
     }
 }

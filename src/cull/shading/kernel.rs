@@ -3,16 +3,17 @@
 use fearless_simd::{Simd, SimdMask};
 
 use super::batch::{LINE, LOBE, ShadingBatch, XI};
+use super::receiver::ReceiverLanes;
 use crate::cull::lanes::load_lines;
-use crate::light::{Roulette, unit};
+use crate::light::unit;
 use crate::lobe::{FIRST_NUMBERS, Lobe, LobeNumbers};
 use crate::num::{F32Lanes, Real, Vector3};
 
-/// What all evaluations of a frame share.
+/// What all evaluations of an estimator share.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame {
-    pub(super) roulette: Roulette,
-    pub(super) least_distance_squared: f32,
+pub(super) struct Settings<D> {
+    pub decision: D,
+    pub least_distance_squared: f32,
 }
 
 /// A light in each lane, without what its lobe has besides numbers.
@@ -75,17 +76,50 @@ pub struct Points<N> {
     pub(super) normal: Vector3<N>,
 }
 
+/// What a light sends to a point in each lane, before it is decided whether that counts.
+pub struct Arriving<S: Simd> {
+    /// The lanes in which the light may arrive; at least one.
+    pub(super) may_be_lit: S::mask32s,
+    pub(super) intensity: F32Lanes<S>,
+    pub(super) distance_squared: F32Lanes<S>,
+    pub(super) direction: Vector3<F32Lanes<S>>,
+    /// `None` for point lights, where it is infinite.
+    pub(super) sharpness: Option<F32Lanes<S>>,
+}
+
 /// A light's estimate at a point in each lane.
 pub struct Evaluated<S: Simd> {
     /// The bits of the lanes in which the light is accepted; at least one.
     pub(super) accepted: u32,
     /// Zero where the light is not accepted.
     pub(super) radiance: F32Lanes<S>,
-    pub(super) intensity: F32Lanes<S>,
-    pub(super) distance_squared: F32Lanes<S>,
-    pub(super) direction: Vector3<F32Lanes<S>>,
-    /// `None` for point lights, where it is infinite.
-    pub(super) sharpness: Option<F32Lanes<S>>,
+    /// What the receiver reflects of the radiance. Zero where the light is not accepted, and without receivers.
+    pub(super) reflected: F32Lanes<S>,
+    pub(super) arriving: Arriving<S>,
+}
+
+impl<S: Simd> Evaluated<S> {
+    /// The estimate `radiance`, which is zero where the light is not `accepted`, and what receivers reflect of it.
+    #[inline(always)]
+    pub fn reflecting(
+        arriving: Arriving<S>,
+        accepted: S::mask32s,
+        radiance: F32Lanes<S>,
+        receivers: &impl ReceiverLanes<S>,
+    ) -> Self {
+        let reflected = match receivers.value(&arriving) {
+            Some(value) => {
+                F32Lanes::select(radiance.is_positive(), radiance * value, radiance.zero())
+            }
+            None => radiance.zero(),
+        };
+        Self {
+            accepted: accepted.to_bitmask() as u32,
+            radiance,
+            reflected,
+            arriving,
+        }
+    }
 }
 
 /// What the lights of a [`ShadingBatch`](crate::ShadingBatch) are: a [`Lobe`], for the lights [`Vpl`](crate::Vpl)
@@ -95,15 +129,15 @@ pub trait ShadedLight: Sized {
     #[doc(hidden)]
     fn lines() -> usize;
 
-    /// Evaluates a light at a point in each lane. `None` if no lane accepts it. `kept_of` gives what is kept of a
-    /// lane's light beside its numbers.
+    /// Evaluates what a light sends to a point in each lane, over a squared distance of at least `least`. `None` if
+    /// it arrives in no lane. `kept_of` gives what is kept of a lane's light beside its numbers.
     #[doc(hidden)]
-    fn evaluate<'a, S: Simd>(
-        frame: &Frame,
+    fn arriving<'a, S: Simd>(
+        least: f32,
         lights: &Lights<F32Lanes<S>>,
         kept_of: impl Fn(usize) -> Option<&'a Self>,
         points: &Points<F32Lanes<S>>,
-    ) -> Option<Evaluated<S>>
+    ) -> Option<Arriving<S>>
     where
         Self: 'a;
 }
@@ -119,16 +153,16 @@ impl<L: Lobe> ShadedLight for L {
     }
 
     #[inline(always)]
-    fn evaluate<'a, S: Simd>(
-        frame: &Frame,
+    fn arriving<'a, S: Simd>(
+        least: f32,
         lights: &Lights<F32Lanes<S>>,
         lobe_of: impl Fn(usize) -> Option<&'a Self>,
         points: &Points<F32Lanes<S>>,
-    ) -> Option<Evaluated<S>>
+    ) -> Option<Arriving<S>>
     where
         Self: 'a,
     {
-        evaluate(frame, lights, lobe_of, points)
+        arriving(least, lights, lobe_of, points)
     }
 }
 
@@ -138,17 +172,17 @@ const DARK_SINE_SQUARED: f32 = 9.094_947e-13;
 /// Keeps the square of n·w away from where products underflow.
 const LEAST_DARK_SQUARE: f32 = 1e-30;
 
-/// Evaluates a light at a point in each lane. `None` if no lane accepts it.
+/// Evaluates what a light sends to a point in each lane. `None` if it arrives in no lane.
 ///
-/// Direction, intensity and acceptance are those of scalar code. Where every lane is dark, because the light
-/// faces away or is below the point's horizon, there is neither a root nor a division.
+/// Direction and intensity are those of scalar code. Where every lane is dark, because the light faces away or is
+/// below the point's horizon, there is neither a root nor a division.
 #[inline(always)]
-fn evaluate<'a, S: Simd, L: Lobe + 'a>(
-    frame: &Frame,
+fn arriving<'a, S: Simd, L: Lobe + 'a>(
+    least: f32,
     lights: &Lights<F32Lanes<S>>,
     lobe_of: impl Fn(usize) -> Option<&'a L>,
     points: &Points<F32Lanes<S>>,
-) -> Option<Evaluated<S>> {
+) -> Option<Arriving<S>> {
     let way = points.position - lights.position;
     let length_squared = way.length_squared();
     let mut may_be_lit = !points.normal.dot(way).is_positive();
@@ -164,18 +198,9 @@ fn evaluate<'a, S: Simd, L: Lobe + 'a>(
     let direction = unit(way, length_squared);
     let intensity = lights.flux * L::value_in_lanes(&lights.numbers, lobe_of, direction);
     // NaN if the squared length is.
-    let distance_squared = length_squared
-        .splat(frame.least_distance_squared)
-        .max(length_squared);
-    let roulette = &frame.roulette;
-    let accepted = may_be_lit & roulette.accepts_in_lanes(intensity, distance_squared, lights.xi);
-    if !accepted.any_true() {
-        return None;
-    }
-    let radiance = roulette.accepted_radiance(intensity, distance_squared);
-    Some(Evaluated {
-        accepted: accepted.to_bitmask() as u32,
-        radiance: F32Lanes::select(accepted, radiance, radiance.zero()),
+    let distance_squared = length_squared.splat(least).max(length_squared);
+    Some(Arriving {
+        may_be_lit,
         intensity,
         distance_squared,
         direction,

@@ -6,8 +6,11 @@
 //! each lane, and as many lines are transposed (`pairs`). Both call one function (`kernel`, and `cluster` for
 //! clusters of lights).
 //!
-//! A receiver (`receiver`) is a point with a lobe of its own, that of light from the eye. Either way evaluates it
-//! for the lights that it accepts.
+//! A receiver (`receiver`) is a point with a lobe of its own, that of light from the eye.
+//!
+//! What arrives at a point is known before it is decided whether it counts. There are three ways to decide
+//! (`decision`): by what arrives, by what the receiver reflects of it, and not at all, where lists were drawn as
+//! they were made. The way is a type parameter, so that each is compiled by itself.
 //!
 //! Direction, lobe and roulette are the generic functions that scalar code runs, so that estimates have the
 //! same bits.
@@ -15,6 +18,7 @@
 mod batch;
 mod block;
 mod cluster;
+mod decision;
 mod estimator;
 mod kernel;
 mod pairs;
@@ -23,6 +27,7 @@ mod receiver;
 
 pub use batch::ShadingBatch;
 pub use block::{BlockEstimates, PointBlock};
+pub use decision::{AtPoint, AtReceiver, Decision, InList, PointDecision};
 pub use estimator::RadianceEstimator;
 pub(super) use kernel::Lights;
 pub use kernel::ShadedLight;

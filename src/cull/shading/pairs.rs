@@ -5,18 +5,20 @@ use glam::Vec3;
 
 use super::batch::ShadingBatch;
 use super::block::BlockEstimates;
-use super::kernel::{Evaluated, Frame, Lights, Points, ShadedLight};
+use super::decision::{Decision, Drawn, LightList};
+use super::kernel::{Arriving, Lights, Points, Settings, ShadedLight};
 use super::point::{Estimate, ShadedPoint};
-use super::receiver::reflected;
+use super::receiver::{NoReceivers, ReceiverLanes, value};
 use crate::cull::lanes::{LANES, store};
+use crate::cull::receivers::WeightedList;
 use crate::lobe::{Lobe, LobeNumbers};
-use crate::num::{F32Lanes, Real, Vector3};
+use crate::num::{F32Lanes, Real, Single, Vector3};
 
 /// As many lights of a list are copied at once.
 const STEP: usize = 8;
 
-/// The lobes of the points of all lanes, if they have any.
-pub(super) trait ReceiverLanes<S: Simd> {
+/// The lobes of the points of all lanes, if they have any, filled point by point.
+pub(super) trait FilledLanes<S: Simd>: ReceiverLanes<S> {
     /// What a point has of it.
     type One;
 
@@ -24,15 +26,9 @@ pub(super) trait ReceiverLanes<S: Simd> {
 
     /// Fills the lanes in `mask` with that of a point. The first of them is `start`.
     fn fill(&mut self, start: usize, mask: S::mask32s, one: &Self::One);
-
-    /// The radiance that the point in each lane reflects.
-    fn reflected(&self, arriving: &Evaluated<S>) -> F32Lanes<S>;
 }
 
-/// Points without a lobe, which reflect nothing.
-pub(super) struct NoReceivers;
-
-impl<S: Simd> ReceiverLanes<S> for NoReceivers {
+impl<S: Simd> FilledLanes<S> for NoReceivers {
     type One = ();
 
     #[inline(always)]
@@ -42,11 +38,6 @@ impl<S: Simd> ReceiverLanes<S> for NoReceivers {
 
     #[inline(always)]
     fn fill(&mut self, _: usize, _: S::mask32s, (): &()) {}
-
-    #[inline(always)]
-    fn reflected(&self, arriving: &Evaluated<S>) -> F32Lanes<S> {
-        arriving.radiance.zero()
-    }
 }
 
 /// Points that each have a lobe of type `R`.
@@ -56,7 +47,7 @@ pub(super) struct Receivers<S: Simd, R> {
     lobes: [Option<R>; LANES],
 }
 
-impl<S: Simd, R: Lobe + Clone> ReceiverLanes<S> for Receivers<S, R> {
+impl<S: Simd, R: Lobe + Clone> FilledLanes<S> for Receivers<S, R> {
     type One = R;
 
     #[inline(always)]
@@ -77,15 +68,17 @@ impl<S: Simd, R: Lobe + Clone> ReceiverLanes<S> for Receivers<S, R> {
             self.lobes[start..].fill(Some(lobe.clone()));
         }
     }
+}
 
+impl<S: Simd, R: Lobe> ReceiverLanes<S> for Receivers<S, R> {
     #[inline(always)]
-    fn reflected(&self, arriving: &Evaluated<S>) -> F32Lanes<S> {
-        reflected::<S, R>(
+    fn value(&self, arriving: &Arriving<S>) -> Option<F32Lanes<S>> {
+        Some(value::<S, R>(
             &self.numbers,
             #[inline(always)]
             |lane| self.lobes[lane].as_ref(),
             arriving,
-        )
+        ))
     }
 }
 
@@ -93,6 +86,8 @@ impl<S: Simd, R: Lobe + Clone> ReceiverLanes<S> for Receivers<S, R> {
 struct Pairs<S: Simd, R> {
     /// The light of each lane, and whatever light after the last.
     lights: [u32; 2 * LANES],
+    /// The weight of each lane's light, if lists have weights.
+    weights: [f32; 2 * LANES],
     /// The turn of each lane's point.
     turns: [usize; 2 * LANES],
     points: Points<F32Lanes<S>>,
@@ -100,12 +95,13 @@ struct Pairs<S: Simd, R> {
     len: usize,
 }
 
-impl<S: Simd, R: ReceiverLanes<S>> Pairs<S, R> {
+impl<S: Simd, R: FilledLanes<S>> Pairs<S, R> {
     #[inline(always)]
     fn new(simd: S) -> Self {
         let zero = Vector3::splat(F32Lanes::new(simd, 0.0), Vec3::ZERO.into());
         Self {
             lights: [0; 2 * LANES],
+            weights: [1.0; 2 * LANES],
             turns: [0; 2 * LANES],
             points: Points {
                 position: zero,
@@ -118,21 +114,25 @@ impl<S: Simd, R: ReceiverLanes<S>> Pairs<S, R> {
 
     /// Fills lanes with the point and the first lights of `list`. Returns the others.
     #[inline(always)]
-    fn fill<'a>(
+    fn fill<'a, D: Decision>(
         &mut self,
         simd: S,
         turn: usize,
         (point, receiver): (&ShadedPoint, &R::One),
-        list: &'a [u32],
-    ) -> &'a [u32] {
+        list: WeightedList<'a>,
+    ) -> WeightedList<'a> {
         let start = self.len % LANES;
-        let (taken, rest) = list.split_at(list.len().min(S::f32s::LEN - start));
-        // As many are written whatever the length of the list, which no branch predictor knows.
-        let lanes = self.lights[start..].chunks_exact_mut(STEP);
-        for (step, lanes) in lanes.take(taken.len().div_ceil(STEP)).enumerate() {
-            for (i, lane) in lanes.iter_mut().enumerate() {
-                *lane = taken[(step * STEP + i).min(taken.len() - 1)];
-            }
+        let WeightedList {
+            lights,
+            mut weights,
+        } = list;
+        let count = lights.len().min(S::f32s::LEN - start);
+        let (taken, lights) = lights.split_at(count);
+        copy(taken, &mut self.lights[start..]);
+        if D::HAS_WEIGHTS {
+            let taken;
+            (taken, weights) = weights.split_at(count);
+            copy(taken, &mut self.weights[start..]);
         }
         self.turns[start..][..LANES].fill(turn);
         let from_start = mask_from::<S>(simd, start);
@@ -142,16 +142,16 @@ impl<S: Simd, R: ReceiverLanes<S>> Pairs<S, R> {
             *vector = Vector3::select(from_start, Vector3::splat(zero, new.into()), *vector);
         }
         self.receivers.fill(start, from_start, receiver);
-        self.len = start + taken.len();
-        rest
+        self.len = start + count;
+        WeightedList { lights, weights }
     }
 
     /// Evaluates the pairs, and folds those that are accepted into `state`.
     #[inline(always)]
-    fn evaluate<L: ShadedLight, A>(
+    fn evaluate<D: Decision, L: ShadedLight, A>(
         &mut self,
         simd: S,
-        frame: &Frame,
+        settings: &Settings<D>,
         lights: &ShadingBatch<L>,
         mut state: A,
         each: &mut impl FnMut(A, usize, &Estimate, f32) -> A,
@@ -165,22 +165,29 @@ impl<S: Simd, R: ReceiverLanes<S>> Pairs<S, R> {
         self.len = 0;
         let gathered = Lights::gathered(simd, lights, &self.lights);
         let lobe_of = |lane: usize| lights.lobes.get(self.lights[lane] as usize);
-        let Some(found) = L::evaluate(frame, &gathered, lobe_of, &self.points) else {
+        let arriving = L::arriving(
+            settings.least_distance_squared,
+            &gathered,
+            lobe_of,
+            &self.points,
+        );
+        let decided = arriving.and_then(
+            #[inline(always)]
+            |arriving| {
+                let drawn = Drawn {
+                    xi: gathered.xi,
+                    weight: gathered.xi.load(&self.weights),
+                };
+                settings.decision.decide(arriving, drawn, &self.receivers)
+            },
+        );
+        let Some(found) = decided else {
             return state;
         };
         let mut reflected = [0.0; LANES];
-        store(&mut reflected, 0, self.receivers.reflected(&found));
+        store(&mut reflected, 0, found.reflected);
         let mut estimates = BlockEstimates::NONE;
-        store(&mut estimates.radiance, 0, found.radiance);
-        store(&mut estimates.intensity, 0, found.intensity);
-        store(&mut estimates.distance_squared, 0, found.distance_squared);
-        let Vector3 { x, y, z } = found.direction;
-        for (lanes, vector) in estimates.direction.iter_mut().zip([x, y, z]) {
-            store(lanes, 0, vector);
-        }
-        if let Some(sharpness) = found.sharpness {
-            store(&mut estimates.sharpness, 0, sharpness);
-        }
+        estimates.store(0, &found);
         let mut accepted = found.accepted & filled;
         while accepted != 0 {
             let lane = accepted.trailing_zeros() as usize % LANES;
@@ -190,6 +197,19 @@ impl<S: Simd, R: ReceiverLanes<S>> Pairs<S, R> {
             state = each(state, turn, &estimates.estimate(lane), reflected);
         }
         state
+    }
+}
+
+/// Copies `from`, which is not longer than `to`, to the front of `to`. What comes after it may change too.
+///
+/// As many are written whatever the length, which no branch predictor knows.
+#[inline(always)]
+fn copy<T: Copy>(from: &[T], to: &mut [T]) {
+    let steps = to.chunks_exact_mut(STEP).take(from.len().div_ceil(STEP));
+    for (step, to) in steps.enumerate() {
+        for (i, to) in to.iter_mut().enumerate() {
+            *to = from[(step * STEP + i).min(from.len() - 1)];
+        }
     }
 }
 
@@ -204,26 +224,26 @@ fn mask_from<S: Simd>(simd: S, start: usize) -> S::mask32s {
 /// Folds the estimates of the lights that points accept, each with the turn of its point and what the point
 /// reflects: point by point, and in the order of their lists.
 #[inline(always)]
-pub(super) fn fold_pairs<'l, S: Simd, L: ShadedLight, R: ReceiverLanes<S>, A>(
+pub(super) fn fold_pairs<'l, S: Simd, D: Decision, L: ShadedLight, R: FilledLanes<S>, A>(
     simd: S,
-    frame: &Frame,
+    settings: &Settings<D>,
     lights: &ShadingBatch<L>,
-    points: impl Iterator<Item = (ShadedPoint, R::One, &'l [u32])>,
+    points: impl Iterator<Item = (ShadedPoint, R::One, D::List<'l>)>,
     mut state: A,
     mut each: impl FnMut(A, usize, &Estimate, f32) -> A,
 ) -> A {
     let mut pairs = Pairs::<S, R>::new(simd);
     for (turn, (point, receiver, list)) in points.enumerate() {
-        let mut rest = list;
-        while !rest.is_empty() {
-            rest = pairs.fill(simd, turn, (&point, &receiver), rest);
+        let mut rest = list.with_any_weights();
+        while !rest.lights.is_empty() {
+            rest = pairs.fill::<D>(simd, turn, (&point, &receiver), rest);
             if pairs.len == S::f32s::LEN {
-                state = pairs.evaluate(simd, frame, lights, state, &mut each);
+                state = pairs.evaluate(simd, settings, lights, state, &mut each);
             }
         }
     }
     if pairs.len > 0 {
-        state = pairs.evaluate(simd, frame, lights, state, &mut each);
+        state = pairs.evaluate(simd, settings, lights, state, &mut each);
     }
     state
 }

@@ -32,8 +32,8 @@ impl From<Vec3> for ShadedPoint {
 pub struct Estimate {
     /// The index of the light.
     pub light: u32,
-    /// The estimate of the radiance, max(L, δ): [`Roulette::estimate`](crate::Roulette::estimate) of the next
-    /// two.
+    /// The estimate L/p of the radiance L = I/l², from the next two. If the point decides by L, it is max(L, δ), as by
+    /// [`Roulette::estimate`](crate::Roulette::estimate).
     pub radiance: f32,
     /// The radiant intensity towards the point.
     pub intensity: f32,

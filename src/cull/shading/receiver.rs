@@ -4,11 +4,11 @@ use fearless_simd::{Simd, SimdBase};
 use glam::Vec3;
 
 use super::block::PointBlock;
-use super::kernel::Evaluated;
+use super::kernel::Arriving;
 use super::point::ShadedPoint;
 use crate::cull::lanes::{LANES, Lanes, load};
 use crate::lobe::{Lobe, LobeNumbers};
-use crate::num::{F32Lanes, Real};
+use crate::num::F32Lanes;
 
 /// A surface point that reflects light to the eye.
 ///
@@ -91,40 +91,68 @@ impl<R: Lobe> ReceiverBlock<R> {
         &self.points
     }
 
-    /// The radiance that a part of the receivers reflects of a light.
+    /// A part of the receivers.
     #[inline(always)]
-    pub(super) fn reflected<S: Simd>(
-        &self,
-        simd: S,
-        part: usize,
-        arriving: &Evaluated<S>,
-    ) -> F32Lanes<S> {
-        let mut numbers = [F32Lanes::new(simd, 0.0); _];
-        for (vector, lanes) in numbers.iter_mut().zip(&self.numbers) {
-            *vector = load(simd, lanes, part);
+    pub(super) fn part<S: Simd>(&self, simd: S, part: usize) -> impl ReceiverLanes<S> {
+        PartOfBlock {
+            block: self,
+            simd,
+            part,
         }
-        let first = part * S::f32s::LEN;
-        reflected::<S, R>(
-            &numbers,
-            #[inline(always)]
-            |lane| self.lobes[first + lane].as_ref(),
-            arriving,
-        )
     }
 }
 
-/// The radiance that the receiver in each lane reflects of a light. Zero where the light is not accepted.
+/// The lobes of the points in all lanes, if they have any.
+pub trait ReceiverLanes<S: Simd> {
+    /// The value of each point's lobe for what arrives there: that towards a point light, or the mean over the
+    /// light of a cluster. `None` for points without a lobe.
+    fn value(&self, arriving: &Arriving<S>) -> Option<F32Lanes<S>>;
+}
+
+/// Points without a lobe, which reflect nothing.
+pub(super) struct NoReceivers;
+
+impl<S: Simd> ReceiverLanes<S> for NoReceivers {
+    #[inline(always)]
+    fn value(&self, _: &Arriving<S>) -> Option<F32Lanes<S>> {
+        None
+    }
+}
+
+/// A part of a block. Its numbers are loaded where they are used, which is not at every light.
+struct PartOfBlock<'b, S, R> {
+    block: &'b ReceiverBlock<R>,
+    simd: S,
+    part: usize,
+}
+
+impl<S: Simd, R: Lobe> ReceiverLanes<S> for PartOfBlock<'_, S, R> {
+    #[inline(always)]
+    fn value(&self, arriving: &Arriving<S>) -> Option<F32Lanes<S>> {
+        let mut numbers = [F32Lanes::new(self.simd, 0.0); _];
+        for (vector, lanes) in numbers.iter_mut().zip(&self.block.numbers) {
+            *vector = load(self.simd, lanes, self.part);
+        }
+        let first = self.part * S::f32s::LEN;
+        Some(value::<S, R>(
+            &numbers,
+            #[inline(always)]
+            |lane| self.block.lobes[first + lane].as_ref(),
+            arriving,
+        ))
+    }
+}
+
+/// The value of the lobe of the receiver in each lane for what arrives.
 #[inline(always)]
-pub(super) fn reflected<'a, S: Simd, R: Lobe + 'a>(
+pub(super) fn value<'a, S: Simd, R: Lobe + 'a>(
     numbers: &LobeNumbers<F32Lanes<S>>,
     lobe_of: impl Fn(usize) -> Option<&'a R>,
-    arriving: &Evaluated<S>,
+    arriving: &Arriving<S>,
 ) -> F32Lanes<S> {
-    let radiance = arriving.radiance;
     let from = -arriving.direction;
-    let value = match arriving.sharpness {
+    match arriving.sharpness {
         None => R::value_in_lanes(numbers, lobe_of, from),
         Some(sharpness) => R::mean_in_lanes(numbers, lobe_of, from, sharpness),
-    };
-    F32Lanes::select(radiance.is_positive(), radiance * value, radiance.zero())
+    }
 }
