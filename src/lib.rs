@@ -350,14 +350,15 @@ pub use light::{
     ClusterSums, DistanceWindow, FilteredSample, FilteredSampling, FrameSeed, MipPyramid, Roulette,
     Seed, TileProbability, Vpl, Vsgl, Xi, pyramid_len, rank_along_curve,
 };
-#[cfg(feature = "ltc")]
-pub use lobe::LtcLobe;
 pub use lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Blind, Cap, Conductor,
     ConstantLobe, Dielectric, Fresnel, FresnelMajorant, Ggx, GgxFamily, GgxLobe, HeightCorrelated,
-    Incidence, LambertFamily, LambertLobe, Lobe, LobeFamily, MaskingShadowing, NoFresnel,
-    PhongLobe, ReceiverLobe, Schlick, Separable, SphericalGaussian, SpotLobe,
+    Incidence, LambertFamily, LambertLobe, Lobe, LobeFamily, LobeSum, MaskingShadowing, NoFresnel,
+    PhongFamily, PhongLobe, ReceiverLobe, Schlick, Separable, SphericalGaussian,
+    SphericalGaussianFamily, SpotLobe, SumFamily,
 };
+#[cfg(feature = "ltc")]
+pub use lobe::{LtcFamily, LtcLobe};
 pub use project::{
     Project, Projected, ProjectedBound, ProjectedEllipsoid, ProjectedHalfSpace, ProjectedSphere,
     stretch_matrix, stretch_rotation,

@@ -1,12 +1,11 @@
 //! The greatest value of a lobe within a cap of directions: never too low, and the value itself as the cap closes.
 
-use std::f64::consts::TAU;
-
 use proptest::prelude::*;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Cap, ConstantLobe, Direction, Error, Ggx, GgxLobe,
     Incidence, LambertLobe, Lobe, PhongLobe, SphericalGaussian, SpotLobe, glam::Vec3,
 };
+use support::caps::{nearest, spiral};
 use support::generators::{self, Lit, log_uniform};
 use support::reference::{Brdf, Fresnel, GivenFresnel, MaskedAlone, Masking, Vector};
 
@@ -77,22 +76,6 @@ struct Case {
 }
 
 impl Case {
-    /// The direction of the cap that is nearest to `direction`.
-    fn nearest(&self, direction: Vector) -> Vector {
-        let axis = Vector::from(*self.cap.axis()).unit();
-        let chord = f64::from(self.cap.chord());
-        if (direction - axis).length() <= chord {
-            return direction;
-        }
-        let sideways = direction - axis * axis.dot(direction);
-        if sideways.length() < 1e-12 {
-            return axis;
-        }
-        // Where the two are close, what is left sideways is not quite at right angles.
-        let edge = axis.turned(sideways.unit(), 2.0 * (0.5 * chord).min(1.0).asin());
-        edge.unit()
-    }
-
     /// Directions of the cap, most of them where the lobe is greatest.
     fn directions(&self, random: &[Vector]) -> Vec<Vector> {
         let surface = self.lit.surface;
@@ -110,18 +93,11 @@ impl Case {
             directions.extend(surface.mirrored_by_facets(roughness, tangent).step_by(8));
         }
         directions.extend_from_slice(random);
-        let side = axis.orthogonal();
-        let chord = f64::from(self.cap.chord());
-        for step in 0..48 {
-            // Evenly over the cap, and along its edge.
-            let azimuth = TAU * f64::from(step) * 0.618_034;
-            let side = side.turned(axis.cross(side), azimuth);
-            let share = (f64::from(step) / 47.0).sqrt();
-            for chord in [chord * share, chord] {
-                directions.push(axis.turned(side, 2.0 * (0.5 * chord).min(1.0).asin()));
-            }
-        }
-        directions.into_iter().map(|d| self.nearest(d)).collect()
+        directions.extend(spiral(&self.cap));
+        directions
+            .into_iter()
+            .map(|direction| nearest(&self.cap, direction))
+            .collect()
     }
 
     fn greatest(&self, random: &[Vector]) -> f64 {

@@ -1,9 +1,8 @@
 use glam::Vec3;
 
-use super::anisotropic_ggx::{anisotropic_masking_root, anisotropic_ndf, ndf_of_scaled_sine};
-use super::fresnel::quasi_convex_maximum;
+use super::anisotropic_ggx::anisotropic_masking_root;
+use super::anisotropic_lobes::{anisotropic_majorant, anisotropic_value, surface_from_numbers};
 use super::ggx_lobes::{GgxLobes, reflectance};
-use super::ggx_majorant::GgxMembers;
 use super::{
     AnisotropicGgx, Cap, Caps, FIRST_NUMBERS, Fresnel, GgxLobe, HeightCorrelated, Incidence, Lobe,
     LobeNumbers, Majorant, MaskingShadowing, NoFresnel, Separable,
@@ -283,16 +282,11 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
         outgoing: Vector3<N>,
     ) -> N {
         let (lobes, parameters) = GgxLobes::from_numbers(numbers);
-        let (_, rest) = numbers.split_at(FIRST_NUMBERS);
-        let world = Matrix3::new(
-            Vector3::new(rest[1], rest[2], rest[3]),
-            Vector3::new(rest[4], rest[5], rest[6]),
-            lobes.normal,
-        );
+        let (roughness, to_surface_frame) = surface_from_numbers(numbers);
         anisotropic_value::<N, G>(
             &lobes,
-            [lobes.roughness, rest[0]],
-            world.transpose(),
+            roughness,
+            to_surface_frame,
             #[inline(always)]
             |cosine| {
                 let fresnel_of = |i| lobe_of(i).map(|lobe| *lobe.fresnel());
@@ -301,69 +295,25 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
             outgoing,
         )
     }
-}
 
-/// f·max(μ_o, 0) towards `outgoing`, for the parts of a lobe. `to_surface_frame` is the rotation from world
-/// space to (tangent, bitangent, n), and `reflectance` is F as a function of cosθ_h.
-#[inline(always)]
-pub(super) fn anisotropic_value<N: Single, G: MaskingShadowing>(
-    at_any_azimuth: &GgxLobes<N>,
-    roughness: [N; 2],
-    to_surface_frame: Matrix3<N>,
-    reflectance: impl FnOnce(N) -> N,
-    outgoing: Vector3<N>,
-) -> N {
-    at_any_azimuth.value_with::<G>(
-        reflectance,
-        outgoing,
-        #[inline(always)]
-        |half_vector| anisotropic_ndf(roughness, to_surface_frame * half_vector),
-        #[inline(always)]
-        |_| anisotropic_masking_root(roughness, to_surface_frame * outgoing),
-    )
-}
-
-/// The majorant of [`anisotropic_value`] within a cap.
-///
-/// The root √(α_x²x² + α_y²y² + z²) is least where each coordinate is.
-#[inline(always)]
-fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
-    at_any_azimuth: &GgxLobes<N>,
-    roughness: [N; 2],
-    to_surface_frame: Matrix3<N>,
-    reflectance: impl Fn(N) -> N,
-    cap: &Caps<N>,
-) -> Majorant<N> {
-    let members = GgxMembers::one(at_any_azimuth);
-    members.majorant::<G>(
-        #[inline(always)]
-        |cosines| quasi_convex_maximum(&reflectance, cosines),
-        #[inline(always)]
-        |half_vectors| {
-            let factors = roughness.map(
-                #[inline(always)]
-                |alpha| (alpha.one_minus() * (alpha + 1.0)).sqrt() / alpha,
-            );
-            let sine = half_vectors.least_scaled_sine(&to_surface_frame, factors);
-            let greatest = ndf_of_scaled_sine(roughness, sine);
-            let filtered = roughness.map(
-                #[inline(always)]
-                |alpha| members.filtered(alpha * alpha, half_vectors).sqrt(),
-            );
-            let typical = anisotropic_ndf(filtered, to_surface_frame * half_vectors.middle());
-            Majorant { greatest, typical }
-        },
-        #[inline(always)]
-        |_| {
-            let along = |axis: Vector3<N>| cap.least_magnitude(axis);
-            let [x, y] = [
-                to_surface_frame.transpose().x,
-                to_surface_frame.transpose().y,
-            ]
-            .map(along);
-            let least = Vector3::new(x, y, cap.least_cosine(at_any_azimuth.normal));
-            anisotropic_masking_root(roughness, least)
-        },
-        cap,
-    )
+    #[inline(always)]
+    fn majorant_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        lobe_of: impl Fn(usize) -> Option<&'a Self>,
+        cap: &Caps<N>,
+    ) -> Majorant<N> {
+        let (lobes, parameters) = GgxLobes::from_numbers(numbers);
+        let (roughness, to_surface_frame) = surface_from_numbers(numbers);
+        anisotropic_majorant::<N, G>(
+            &lobes,
+            roughness,
+            to_surface_frame,
+            #[inline(always)]
+            |cosine| {
+                let fresnel_of = |i| lobe_of(i).map(|lobe| *lobe.fresnel());
+                reflectance(parameters, fresnel_of, cosine)
+            },
+            cap,
+        )
+    }
 }

@@ -40,7 +40,7 @@ use crate::base::{Direction, Error, number_in};
 use crate::num::{Real, Single, UNIT_ROUNDOFF, Vector3, round_down};
 
 /// Budget for dot products, cross products and differences of directions, in units of u.
-const CHORD_ROUNDINGS: f32 = 40.0;
+const CHORD_ROUNDINGS: f32 = 80.0;
 /// Budget for the distance of a ball.
 const DISTANCE_ROUNDINGS: u16 = 4;
 /// Budget for the chord of a ball, beside that of its distance.
@@ -265,25 +265,6 @@ impl<N: Single> Caps<N> {
         )
     }
 
-    /// The greatest ω·r for a vector `row` = r of any length.
-    #[cfg(feature = "ltc")]
-    #[inline(always)]
-    pub fn greatest_product(&self, row: Vector3<N::Double>) -> N::Double {
-        row.dot(self.axis.widen()) + row.length() * self.chord.widen()
-    }
-
-    /// The least ‖Rω‖ for a matrix R with these `rows`, whose singular values are at most `norm`. May be negative.
-    #[cfg(feature = "ltc")]
-    #[inline(always)]
-    pub fn least_image(&self, rows: [Vector3<N::Double>; 3], norm: N::Double) -> N::Double {
-        let axis = self.axis.widen();
-        let [x, y, z] = rows.map(
-            #[inline(always)]
-            |row| row.dot(axis),
-        );
-        (x * x + y * y + z * z).sqrt() - norm * self.chord.widen()
-    }
-
     /// The greatest ω·n for n in `normals`, at most 1. Not positive if all of the cap is below every horizon.
     #[inline(always)]
     pub fn greatest_cosine(&self, normals: &Self) -> N {
@@ -295,7 +276,7 @@ impl<N: Single> Caps<N> {
     #[inline(always)]
     pub fn cosine(&self, normals: &Self) -> Majorant<N> {
         let cosine = normals.axis.dot(self.axis);
-        let spread = self.chord + normals.chord;
+        let spread = self.spread(normals);
         let greatest = (cosine + spread).min(spread.splat(1.0));
         let both = (cosine * cosine + spread * spread).sqrt();
         Majorant {
@@ -316,10 +297,18 @@ impl<N: Single> Caps<N> {
         (axis.dot(self.axis).abs() - self.chord).max(self.chord.zero())
     }
 
-    /// The least distance ‖ω − u‖ from a unit vector `direction` = u.
+    /// The least distance ‖ω − u‖ for u in `axes`, and that of both axes.
     #[inline(always)]
-    pub fn least_distance(&self, direction: Vector3<N>) -> N {
-        ((self.axis - direction).length() - self.chord).max(self.chord.zero())
+    pub fn distances(&self, axes: &Self) -> [N; 2] {
+        let middle = (self.axis - axes.axis).length();
+        let least = Real::max(middle - self.spread(axes), middle.zero());
+        [least, middle]
+    }
+
+    /// The sum of both chords.
+    #[inline(always)]
+    pub fn spread(&self, other: &Self) -> N {
+        self.chord + other.chord
     }
 
     /// The half vectors ω_i + ω for ω_i in `incoming`.

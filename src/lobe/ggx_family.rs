@@ -4,13 +4,17 @@ use core::marker::PhantomData;
 use super::ggx::masking_root;
 use super::ggx_majorant::{GgxMembers, worst_alpha_squared};
 use super::{
-    Cap, Caps, Fresnel, FresnelMajorant, GgxLobe, HeightCorrelated, LobeFamily, Majorant,
-    MaskingShadowing, ReceiverLobe,
+    AnisotropicGgxLobe, Cap, Caps, Fresnel, FresnelMajorant, GgxLobe, HeightCorrelated, LobeFamily,
+    Majorant, MaskingShadowing, ReceiverLobe,
 };
-use crate::num::Single;
+use crate::num::{Single, round_up};
 
-/// What stands for many [`GgxLobe`]s with the masking function `G`: caps of normals and of incoming directions, the
-/// least cosine of incidence, a range of roughness, and a majorant of the Fresnel factors.
+/// Budget for the ratio of both roughnesses.
+const STRETCH_ROUNDINGS: u16 = 1;
+
+/// What stands for many [`GgxLobe`]s and [`AnisotropicGgxLobe`]s with the masking function `G`: caps of normals and of
+/// incoming directions, the least cosine of incidence, a range of roughness, and a majorant of the Fresnel factors. Of
+/// anisotropy it has the greatest ratio of both roughnesses, but no tangents.
 ///
 /// Within a cap of directions its majorant is the product of the greatest F, D and G2/(4μ_i) of any such lobe. The
 /// derivation, and the proof that it nests, are in the source.
@@ -29,8 +33,12 @@ struct Numbers {
     incident_cosine: f32,
     /// The least root of G1(ω_i)
     incident_root: f32,
-    /// The least and the greatest α.
+    /// The least and the greatest α, the greater one of α_x and α_y.
     roughness: [f32; 2],
+    /// The greatest ratio of that to the other one.
+    stretch: f32,
+    /// The least of both.
+    smoothest: f32,
     fresnel: FresnelMajorant,
 }
 
@@ -46,6 +54,8 @@ impl Numbers {
             incident_cosine: self.incident_cosine.min(other.incident_cosine),
             incident_root: self.incident_root.min(other.incident_root),
             roughness: [least.min(other_least), most.max(other_most)],
+            stretch: self.stretch.max(other.stretch),
+            smoothest: self.smoothest.min(other.smoothest),
             fresnel: self.fresnel.max(other.fresnel),
             ..self
         }
@@ -62,7 +72,25 @@ impl<F: Fresnel, G: MaskingShadowing> ReceiverLobe for GgxLobe<F, G> {
             incident_cosine: self.incident_cosine(),
             incident_root: self.incident_root,
             roughness: [self.ggx().roughness(); 2],
+            stretch: 1.0,
+            smoothest: self.ggx().roughness(),
             fresnel: self.fresnel().majorant().or_one(),
+        })
+    }
+}
+
+impl<F: Fresnel, G: MaskingShadowing> ReceiverLobe for AnisotropicGgxLobe<F, G> {
+    type Family = GgxFamily<G>;
+
+    fn family(&self) -> GgxFamily<G> {
+        let [along, across] = self.ggx().roughness();
+        let (rougher, smoother) = (along.max(across), along.min(across));
+        // That of the smoother roughness, with the root of this lobe for ω_i.
+        let isotropic = self.at_any_azimuth().family();
+        GgxFamily::new(Numbers {
+            roughness: [rougher; 2],
+            stretch: round_up(rougher / smoother, STRETCH_ROUNDINGS),
+            ..isotropic.numbers
         })
     }
 }
@@ -104,22 +132,26 @@ impl<G: MaskingShadowing> LobeFamily for GgxFamily<G> {
             incident_cosine,
             incident_root: cap.splat(numbers.incident_root),
         };
-        let roughness = numbers.roughness;
         members.majorant::<G>(
             #[inline(always)]
             |[least_cosine, _]| numbers.fresnel.value(least_cosine),
             #[inline(always)]
             |half_vectors| {
-                let [least, most] = roughness;
+                let [least, most] = numbers.roughness;
                 let range = [cap.splat(least * least), cap.splat(most * most)];
-                members.ndf(
+                let mut ndf = members.ndf(
                     half_vectors,
                     #[inline(always)]
-                    |sine| worst_alpha_squared(range, sine),
-                )
+                    |sine| {
+                        let worst = worst_alpha_squared(range, sine);
+                        [worst, worst * (1.0 / numbers.stretch)]
+                    },
+                );
+                ndf.greatest = ndf.greatest * numbers.stretch;
+                ndf
             },
             #[inline(always)]
-            |outgoing_cosine| masking_root(cap.splat(roughness[0]), outgoing_cosine),
+            |outgoing_cosine| masking_root(cap.splat(numbers.smoothest), outgoing_cosine),
             cap,
         )
     }

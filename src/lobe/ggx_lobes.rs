@@ -233,7 +233,7 @@ impl<N: Single> GgxLobes<N> {
                 members.ndf(
                     half_vectors,
                     #[inline(always)]
-                    |_| alpha_squared,
+                    |_| [alpha_squared; 2],
                 )
             },
             #[inline(always)]

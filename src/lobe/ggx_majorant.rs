@@ -15,8 +15,13 @@
 //! D falls with s. As a function of a = α² it is a/(π (a(1 − s²) + s²)²), which rises up to a = s²/(1 − s²) and
 //! falls then. So its greatest value is at s, with that a clamped to \[α₀², α₁²\].
 //!
+//! An anisotropic D is 1/(π α_xα_y (x²/α_x² + y²/α_y² + c²)²) for the half vector (x, y, c) in the surface's frame. Let
+//! α be the greater of α_x and α_y, and κ their ratio. With x² + y² = s², it is at most κ times the isotropic D of
+//! roughness α, which needs no frame: a family has the greatest κ. One lobe takes the frame of its own.
+//!
 //! G2/(4μ_i) is bounded by its value for μ, Λ, m, and the root of m for α₀, since it falls with μ_i and with both
-//! roots, and grows with μ_o ([`MaskingShadowing`]), and since the root √(μ² + α²(1 − μ²)) grows with α.
+//! roots, and grows with μ_o ([`MaskingShadowing`]), and since the root √(μ² + α²(1 − μ²)) grows with α. On an
+//! anisotropic surface the root is at least that for the lesser of α_x and α_y.
 //!
 //! The product of the three bounds is the majorant. As the chords close it becomes the lobe itself.
 //!
@@ -36,7 +41,7 @@
 //! # The typical value
 //!
 //! It takes the sine, the cosines and the Fresnel factor of the middle, and the NDF that is filtered as for a
-//! Gaussian spread of half vectors: α̂² + ½(c/‖h‖ + c_n)², with the α̂ of the bound.
+//! Gaussian spread of half vectors: α̂² + ½(c/‖h‖ + c_n)², with the α̂ of the bound, or α_xα_y.
 
 use super::ggx::ndf_of_sine;
 use super::half_vectors::HalfVectors;
@@ -44,7 +49,7 @@ use super::{Caps, GgxLobes, Majorant, MaskingShadowing};
 use crate::num::{Real, Single};
 
 /// Pays for the rounding of the majorant, besides those of one lobe's F and of the cap.
-const MAXIMUM_WITHIN_ROUNDINGS: u16 = 64;
+const MAXIMUM_WITHIN_ROUNDINGS: u16 = 128;
 
 /// One GGX lobe, or the members of a family, in each lane: without Fresnel factor and roughness.
 #[derive(Clone, Copy)]
@@ -111,19 +116,20 @@ impl<N: Single> GgxMembers<N> {
         )
     }
 
-    /// The majorant of an isotropic D. `alpha_squared` is the α² that makes D greatest, for the sine s.
+    /// The majorant of an isotropic D. `alpha_squared` gives, for the sine s, the α² that makes D greatest, and a
+    /// typical one.
     #[inline(always)]
     pub fn ndf(
         &self,
         half_vectors: &HalfVectors<N>,
-        alpha_squared: impl FnOnce(N) -> N,
+        alpha_squared: impl FnOnce(N) -> [N; 2],
     ) -> Majorant<N> {
         let sine = half_vectors.least_sine(&self.normals);
-        let alpha_squared = alpha_squared(sine);
+        let [worst, typical] = alpha_squared(sine);
         let typical_sine = half_vectors.typical_sine(&self.normals);
         Majorant {
-            greatest: ndf_of_sine(alpha_squared, sine),
-            typical: ndf_of_sine(self.filtered(alpha_squared, half_vectors), typical_sine),
+            greatest: ndf_of_sine(worst, sine),
+            typical: ndf_of_sine(self.filtered(typical, half_vectors), typical_sine),
         }
     }
 

@@ -5,7 +5,7 @@ use core::array::from_fn;
 use fearless_simd::{Simd, SimdBase};
 use glam::Vec3;
 
-use super::anisotropic_ggx_lobe::anisotropic_value;
+use super::anisotropic_lobes::anisotropic_value;
 use super::lambert::lambert;
 use super::phong::PhongLobes;
 use super::spherical_gaussian::SphericalGaussians;

@@ -2,12 +2,10 @@ use core::f64::consts::FRAC_1_PI;
 
 use glam::{Mat3, Vec3};
 
-use super::{Cap, Caps, Fresnel, Ggx, Incidence, Lobe, LobeNumbers, ltc_table, padded};
+use super::ltc_lobes::LtcLobes;
+use super::{Cap, Caps, Fresnel, Ggx, Incidence, Lobe, LobeNumbers, Majorant, ltc_table, padded};
 use crate::base::{Direction, Error, number_in};
-use crate::num::{Single, Vector3, exact_dot, round_up, sqrt_f64};
-
-/// Budget for the rounding of a maximum within a cap to single precision.
-const MAXIMUM_ROUNDINGS: u16 = 2;
+use crate::num::{Single, Vector3, exact_dot, sqrt_f64};
 
 /// A linearly transformed cosine: a cheap lobe that resembles a [`GgxLobe`](crate::GgxLobe)
 /// [Heitz et al. 2016; Xia et al. 2023].
@@ -314,31 +312,8 @@ impl Lobe for LtcLobe {
         self.lanes().value(outgoing.into())
     }
 
-    /// z grows by no more than the chord times its row, and ‖M⁻¹ω‖ falls by no more than the chord times the
-    /// greatest singular value, for which the root of the sum of all squared elements is taken.
-    ///
-    /// The least singular value is the determinant over the product of the others, of which half that sum is an
-    /// upper bound. It bounds ‖M⁻¹ω‖ for wide caps.
     fn maximum_within(&self, cap: &Cap) -> f32 {
-        let (lanes, cap) = (self.lanes(), cap.lanes());
-        let is_above = cap.greatest_cosine(&Caps::around(lanes.normal)) > 0.0;
-        let [first, third] = [lanes.first, lanes.third].map(Vector3::widen);
-        let second = third.cross(first);
-        let rows = [first, second, third];
-        let height = cap.greatest_product(third);
-        if self.is_empty() || !is_above || height <= 0.0 {
-            return 0.0;
-        }
-        let squares = rows.map(Vector3::length_squared);
-        let [_, determinant, _] = squares;
-        let sum: f64 = squares.iter().sum();
-        let length = cap
-            .least_image(rows, sqrt_f64(sum))
-            .max(2.0 * determinant / sum);
-        // z is no longer than the whole.
-        let most =
-            f64::from(self.amplitude) * (height / length).min(1.0) / (length * length * length);
-        round_up(most.min(f32::MAX.into()) as f32, MAXIMUM_ROUNDINGS).max(f32::MIN_POSITIVE)
+        self.lanes().majorant(&cap.lanes()).greatest
     }
 
     fn horizon_normal(&self) -> Option<Direction> {
@@ -376,48 +351,15 @@ impl Lobe for LtcLobe {
         _: impl Fn(usize) -> Option<&'a Self>,
         outgoing: Vector3<N>,
     ) -> N {
-        let [n_x, n_y, n_z, amplitude, x_x, x_y, x_z, z_x, z_y, z_z, ..] = *numbers;
-        let lobes = LtcLobes {
-            normal: Vector3::new(n_x, n_y, n_z),
-            amplitude,
-            first: Vector3::new(x_x, x_y, x_z),
-            third: Vector3::new(z_x, z_y, z_z),
-        };
-        lobes.value(outgoing)
-    }
-}
-
-/// An [`LtcLobe`] in each lane.
-#[derive(Clone, Copy)]
-pub(crate) struct LtcLobes<N> {
-    pub normal: Vector3<N>,
-    pub amplitude: N,
-    /// The first row of M⁻¹.
-    pub first: Vector3<N>,
-    /// The third row of M⁻¹.
-    pub third: Vector3<N>,
-}
-
-impl<N: Single> LtcLobes<N> {
-    /// The second row of M⁻¹.
-    #[inline(always)]
-    fn second(&self) -> Vector3<N> {
-        self.third.cross(self.first)
+        LtcLobes::from_numbers(numbers).value(outgoing)
     }
 
-    /// v towards `outgoing`.
     #[inline(always)]
-    pub fn value(&self, outgoing: Vector3<N>) -> N {
-        let zero = self.amplitude.zero();
-        let height = self.third.dot(outgoing);
-        let is_lit = self.normal.dot(outgoing).is_positive() & height.is_positive();
-        if N::is_known_false(is_lit) {
-            return zero;
-        }
-        let (x, y) = (self.first.dot(outgoing), self.second().dot(outgoing));
-        let over = (x * x + y * y + height * height).recip();
-        // Two factors, since the fourth power of a length may overflow.
-        let value = self.amplitude * over * (height * over);
-        N::select(is_lit, value, zero)
+    fn majorant_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        _: impl Fn(usize) -> Option<&'a Self>,
+        cap: &Caps<N>,
+    ) -> Majorant<N> {
+        LtcLobes::from_numbers(numbers).majorant(cap)
     }
 }

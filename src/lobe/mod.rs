@@ -3,12 +3,14 @@
 mod anisotropic_gaussian;
 mod anisotropic_ggx;
 mod anisotropic_ggx_lobe;
+mod anisotropic_lobes;
 mod cap;
 mod conductor;
 mod constant;
 mod dielectric;
 mod family;
 mod fresnel;
+mod gaussian_family;
 mod gaussian_fit;
 mod ggx;
 mod ggx_family;
@@ -22,16 +24,22 @@ mod lambert_family;
 #[cfg(all(test, feature = "cull"))]
 mod lanes_tests;
 #[cfg(feature = "ltc")]
+mod ltc_family;
+#[cfg(feature = "ltc")]
 mod ltc_lobe;
+#[cfg(feature = "ltc")]
+mod ltc_lobes;
 #[cfg(feature = "ltc")]
 mod ltc_table;
 #[cfg(all(test, feature = "cull"))]
 mod majorant_tests;
 mod masking;
 mod phong;
+mod phong_family;
 mod reflected_gaussian;
 mod spherical_gaussian;
 mod spot;
+mod sum;
 mod von_mises_fisher;
 
 pub use anisotropic_gaussian::AnisotropicSphericalGaussian;
@@ -46,6 +54,7 @@ pub use dielectric::Dielectric;
 pub(crate) use family::Majorant;
 pub use family::{Blind, LobeFamily, ReceiverLobe};
 pub use fresnel::{Fresnel, FresnelMajorant, NoFresnel, Schlick};
+pub use gaussian_family::SphericalGaussianFamily;
 pub(crate) use gaussian_fit::toksvig;
 pub use ggx::Ggx;
 pub use ggx_family::GgxFamily;
@@ -55,12 +64,16 @@ pub use incidence::Incidence;
 pub use lambert::LambertLobe;
 pub use lambert_family::LambertFamily;
 #[cfg(feature = "ltc")]
+pub use ltc_family::LtcFamily;
+#[cfg(feature = "ltc")]
 pub use ltc_lobe::LtcLobe;
 pub use masking::{HeightCorrelated, MaskingShadowing, Separable};
 pub use phong::PhongLobe;
+pub use phong_family::PhongFamily;
 pub use spherical_gaussian::SphericalGaussian;
 pub(crate) use spherical_gaussian::solid_angle;
 pub use spot::SpotLobe;
+pub use sum::{LobeSum, SumFamily};
 
 use glam::Vec3;
 
@@ -96,8 +109,8 @@ pub trait Lobe {
     /// Finite, not negative and never NaN. Zero at and below the horizon, if the lobe has one.
     fn value(&self, outgoing: Vec3) -> f32;
 
-    /// An upper bound of the value towards every direction of `cap`, which takes each direction to be a vector of
-    /// exactly unit length.
+    /// An upper bound of the value towards every direction of `cap`: of the exact value, which takes each direction to
+    /// be a vector of exactly unit length, and of what [`value`](Self::value) computes.
     ///
     /// The narrower the cap, the closer it is to the greatest value there; for a chord of zero it is the value, but
     /// for rounding. Zero if all of the cap is below the horizon. By default it is infinite, which is true of every
@@ -166,11 +179,7 @@ pub trait Lobe {
     where
         Self: Sized + 'a,
     {
-        N::per_lane(
-            [outgoing.x, outgoing.y, outgoing.z],
-            #[inline(always)]
-            |i, outgoing| lobe_of(i).map_or(0.0, |lobe| lobe.value(Vec3::from_array(outgoing))),
-        )
+        value_per_lane(lobe_of, outgoing)
     }
 
     /// Computes the [majorant](Majorant) of one lobe in each lane. `lobe_of` gives that of a lane.
@@ -184,10 +193,7 @@ pub trait Lobe {
     where
         Self: Sized + 'a,
     {
-        Majorant::exactly(cap.per_lane(
-            #[inline(always)]
-            |i, cap| lobe_of(i).map_or(f32::INFINITY, |lobe| lobe.maximum_within(cap)),
-        ))
+        majorant_per_lane(lobe_of, cap)
     }
 
     /// Computes in each lane what stands for the mean of the lobe over the SG about `axis` with `sharpness`:
@@ -205,4 +211,29 @@ pub trait Lobe {
     {
         Self::value_in_lanes(numbers, lobe_of, axis)
     }
+}
+
+/// [`Lobe::value_in_lanes`], lane by lane.
+#[inline(always)]
+fn value_per_lane<'a, N: Single, L: Lobe + 'a>(
+    lobe_of: impl Fn(usize) -> Option<&'a L>,
+    outgoing: Vector3<N>,
+) -> N {
+    N::per_lane(
+        [outgoing.x, outgoing.y, outgoing.z],
+        #[inline(always)]
+        |i, outgoing| lobe_of(i).map_or(0.0, |lobe| lobe.value(Vec3::from_array(outgoing))),
+    )
+}
+
+/// [`Lobe::majorant_in_lanes`], lane by lane.
+#[inline(always)]
+fn majorant_per_lane<'a, N: Single, L: Lobe + 'a>(
+    lobe_of: impl Fn(usize) -> Option<&'a L>,
+    cap: &Caps<N>,
+) -> Majorant<N> {
+    Majorant::exactly(cap.per_lane(
+        #[inline(always)]
+        |i, cap| lobe_of(i).map_or(f32::INFINITY, |lobe| lobe.maximum_within(cap)),
+    ))
 }

@@ -2,7 +2,7 @@ use core::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::{Cap, Caps, Incidence, Lobe, LobeNumbers, padded};
+use super::{Cap, Caps, Incidence, Lobe, LobeNumbers, Majorant, padded};
 use crate::base::{Direction, Error, number_in};
 use crate::num::{self, Real, Single, Vector3, exact_dot};
 
@@ -142,16 +142,7 @@ impl Lobe for PhongLobe {
 
     #[inline]
     fn maximum_within(&self, cap: &Cap) -> f32 {
-        let (lanes, cap) = (self.lanes(), cap.lanes());
-        let distance = f64::from(cap.least_distance(lanes.axis));
-        let distance_squared = distance * distance;
-        let is_above = cap.greatest_cosine(&Caps::around(lanes.normal)) > 0.0;
-        if !is_above || self.is_empty() || distance_squared >= 2.0 {
-            return 0.0;
-        }
-        let most = lanes.value_at(distance_squared, true);
-        // It may underflow.
-        num::round_up(most, MAXIMUM_ROUNDINGS).max(f32::MIN_POSITIVE)
+        self.lanes().majorant(&cap.lanes()).greatest
     }
 
     fn horizon_normal(&self) -> Option<Direction> {
@@ -193,14 +184,16 @@ impl Lobe for PhongLobe {
         _: impl Fn(usize) -> Option<&'a Self>,
         outgoing: Vector3<N>,
     ) -> N {
-        let [n_x, n_y, n_z, u_x, u_y, u_z, exponent, albedo, ..] = *numbers;
-        let lobes = PhongLobes {
-            normal: Vector3::new(n_x, n_y, n_z),
-            axis: Vector3::new(u_x, u_y, u_z),
-            exponent,
-            albedo,
-        };
-        lobes.value(outgoing)
+        PhongLobes::from_numbers(numbers).value(outgoing)
+    }
+
+    #[inline(always)]
+    fn majorant_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        _: impl Fn(usize) -> Option<&'a Self>,
+        cap: &Caps<N>,
+    ) -> Majorant<N> {
+        PhongLobes::from_numbers(numbers).majorant(cap)
     }
 }
 
@@ -228,6 +221,75 @@ impl PhongLobe {
 }
 
 impl<N: Single> PhongLobes<N> {
+    #[inline(always)]
+    fn from_numbers(numbers: &LobeNumbers<N>) -> Self {
+        let [n_x, n_y, n_z, u_x, u_y, u_z, exponent, albedo, ..] = *numbers;
+        Self {
+            normal: Vector3::new(n_x, n_y, n_z),
+            axis: Vector3::new(u_x, u_y, u_z),
+            exponent,
+            albedo,
+        }
+    }
+
+    /// The majorant within a cap.
+    #[inline(always)]
+    fn majorant(&self, cap: &Caps<N>) -> Majorant<N> {
+        let [normals, axes] = [self.normal, self.axis].map(
+            #[inline(always)]
+            |axis| Caps::around(axis),
+        );
+        self.majorant_of(
+            &normals,
+            &axes,
+            #[inline(always)]
+            |_| self.exponent,
+            cap,
+        )
+    }
+
+    /// The majorant of lobes with other normals and axes. `exponent` gives that for which the lobe is greatest at a
+    /// distance from the axis, of which it takes half the square.
+    ///
+    /// The typical value is that between the axes, of the lobe that is wider by the spread of the directions. A power
+    /// of the cosine is nearly an SG of the sharpness n, whose variance is 1/n for each of two axes; that of a disc of
+    /// the radius c is c²/4.
+    #[inline(always)]
+    pub(super) fn majorant_of(
+        &self,
+        normals: &Caps<N>,
+        axes: &Caps<N>,
+        exponent: impl FnOnce(N) -> N,
+        cap: &Caps<N>,
+    ) -> Majorant<N> {
+        let above = cap.greatest_cosine(normals).is_positive();
+        let [least, middle] = cap.distances(axes).map(
+            #[inline(always)]
+            |distance| distance.widen() * distance.widen(),
+        );
+        let two = least.splat(2.0);
+        let is_lit = self.albedo.is_positive() & above & !two.le(least);
+        let zero = self.albedo.zero();
+        if N::is_known_false(is_lit) {
+            return Majorant::exactly(zero);
+        }
+        let exponent = exponent(N::narrow(least * 0.5));
+        let spread = cap.spread(axes);
+        let wider = exponent / (exponent * spread * spread * 0.25 + 1.0);
+        let greatest = Self { exponent, ..*self }.value_at(least, above);
+        let typical = Self {
+            exponent: wider,
+            ..*self
+        }
+        .value_at(middle, above);
+        // Both may underflow.
+        let smallest = zero.splat(f32::MIN_POSITIVE);
+        let greatest = Real::max(greatest.round_up(MAXIMUM_ROUNDINGS), smallest);
+        let typical = Real::max(typical, smallest).min(greatest);
+        let [greatest, typical] = N::select_all(is_lit, [greatest, typical], [zero; 2]);
+        Majorant { greatest, typical }
+    }
+
     /// f·max(μ_o, 0) towards `outgoing`.
     ///
     /// The cosine is 1 − ½‖ω_o − ω_u‖² in `f64`, since the power multiplies its relative error by n. The

@@ -2,9 +2,9 @@ use core::f64::consts::TAU;
 
 use glam::Vec3;
 
-use super::{Cap, Lobe, LobeNumbers, padded, unit};
+use super::{Cap, Caps, Lobe, LobeNumbers, Majorant, padded, unit};
 use crate::base::{Direction, Error, number_in};
-use crate::num::{Real, Single, Vector3, exponential, one_minus_exponential, round_up};
+use crate::num::{Real, Single, Vector3, exponential, one_minus_exponential};
 
 /// Budget for the value of a maximum within a cap.
 const MAXIMUM_ROUNDINGS: u16 = 8;
@@ -224,12 +224,8 @@ impl Lobe for SphericalGaussian {
 
     #[inline]
     fn maximum_within(&self, cap: &Cap) -> f32 {
-        let lanes = self.lanes();
-        let distance = f64::from(cap.lanes().least_distance(lanes.axis));
-        let most = lanes.value_at(distance * distance);
-        // It may underflow.
-        let most = round_up(most, MAXIMUM_ROUNDINGS).max(f32::MIN_POSITIVE);
-        most.min(self.amplitude)
+        let axes = Caps::around(self.axis.into());
+        self.lanes().majorant(&axes, &cap.lanes()).greatest
     }
 
     fn is_empty(&self) -> bool {
@@ -256,13 +252,17 @@ impl Lobe for SphericalGaussian {
         _: impl Fn(usize) -> Option<&'a Self>,
         outgoing: Vector3<N>,
     ) -> N {
-        let [x, y, z, sharpness, amplitude, ..] = *numbers;
-        let lobes = SphericalGaussians {
-            axis: Vector3::new(x, y, z),
-            sharpness,
-            amplitude,
-        };
-        lobes.value(outgoing)
+        SphericalGaussians::from_numbers(numbers).value(outgoing)
+    }
+
+    #[inline(always)]
+    fn majorant_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        _: impl Fn(usize) -> Option<&'a Self>,
+        cap: &Caps<N>,
+    ) -> Majorant<N> {
+        let lobes = SphericalGaussians::from_numbers(numbers);
+        lobes.majorant(&Caps::around(lobes.axis), cap)
     }
 
     /// ∫ v g dω over the integral of g: of the product's integral, that of g is divided out.
@@ -294,6 +294,44 @@ pub(crate) struct SphericalGaussians<N> {
 }
 
 impl<N: Single> SphericalGaussians<N> {
+    #[inline(always)]
+    fn from_numbers(numbers: &LobeNumbers<N>) -> Self {
+        let [x, y, z, sharpness, amplitude, ..] = *numbers;
+        Self {
+            axis: Vector3::new(x, y, z),
+            sharpness,
+            amplitude,
+        }
+    }
+
+    /// The majorant within a cap, of SGs about `axes`.
+    ///
+    /// The typical value is that between the axes, of the SG that is wider by the spread of the directions: 1/λ is the
+    /// variance for each of two axes, and that of a disc of the radius c is c²/4.
+    #[inline(always)]
+    pub(super) fn majorant(&self, axes: &Caps<N>, cap: &Caps<N>) -> Majorant<N> {
+        let [least, middle] = cap.distances(axes).map(
+            #[inline(always)]
+            |distance| distance.widen() * distance.widen(),
+        );
+        let spread = cap.spread(axes);
+        let wider = self.sharpness * spread * spread * 0.25 + 1.0;
+        let filtered = Self {
+            axis: self.axis,
+            sharpness: self.sharpness / wider,
+            amplitude: self.amplitude / wider,
+        };
+        // Both may underflow.
+        let smallest = wider.splat(f32::MIN_POSITIVE);
+        let greatest = self.value_at(least).round_up(MAXIMUM_ROUNDINGS);
+        let greatest = Real::max(greatest, smallest).min(self.amplitude);
+        let typical = Real::max(filtered.value_at(middle), smallest);
+        Majorant {
+            greatest,
+            typical: typical.min(greatest),
+        }
+    }
+
     /// c exp(−½λ‖ω − ξ‖²), which is never above c, and zero for NaN.
     ///
     /// The exponent is computed in double precision, from the difference of the vectors, since λ multiplies

@@ -2,12 +2,14 @@ use core::f32::consts::PI;
 
 use glam::Vec3;
 
-use super::{Cap, ConstantLobe, Lobe, LobeNumbers, padded};
+use super::{Cap, Caps, ConstantLobe, Lobe, LobeNumbers, Majorant, padded};
 use crate::base::{Direction, Error, number_in};
-use crate::num::{Real, Single, Vector3, round_down, round_up, tan};
+use crate::num::{Real, Single, Vector3, round_down, tan};
 
 /// Budget for the value and the versine of a maximum within a cap.
 const MAXIMUM_ROUNDINGS: u16 = 16;
+/// The typical value within a cap over the greatest, at least: where the middle is in the dark, some of the cap is lit.
+const LEAST_TYPICAL_SHARE: f32 = 0.01;
 
 /// The lobe of an engine's spot light: constant within an inner cone, and fading to zero at an outer cone.
 ///
@@ -154,10 +156,8 @@ impl Lobe for SpotLobe {
 
     #[inline]
     fn maximum_within(&self, cap: &Cap) -> f32 {
-        let distance = cap.lanes().least_distance(self.axis.into());
-        let versine = round_down(0.5 * distance * distance, MAXIMUM_ROUNDINGS);
-        let most = spot_of_versine(self.versines[1], self.slope(), versine);
-        round_up(most, MAXIMUM_ROUNDINGS)
+        let numbers = self.numbers();
+        Self::majorant_in_lanes(&numbers, |_| Some(self), &cap.lanes()).greatest
     }
 
     fn is_empty(&self) -> bool {
@@ -186,6 +186,28 @@ impl Lobe for SpotLobe {
     ) -> N {
         let [x, y, z, outer, slope, ..] = *numbers;
         spot(Vector3::new(x, y, z), outer, slope, outgoing)
+    }
+
+    /// The typical value is that halfway between the middle and the nearest direction, and not much less than the
+    /// greatest.
+    #[inline(always)]
+    fn majorant_in_lanes<'a, N: Single>(
+        numbers: &LobeNumbers<N>,
+        _: impl Fn(usize) -> Option<&'a Self>,
+        cap: &Caps<N>,
+    ) -> Majorant<N> {
+        let [x, y, z, outer, slope, ..] = *numbers;
+        let [least, middle] = cap.distances(&Caps::around(Vector3::new(x, y, z)));
+        let halfway = (least + middle) * 0.5;
+        let versine = least * least * 0.5 * round_down(1.0, MAXIMUM_ROUNDINGS);
+        let greatest = spot_of_versine(outer, slope, versine).round_up(MAXIMUM_ROUNDINGS);
+        let typical = spot_of_versine(outer, slope, halfway * halfway * 0.5);
+        // Zero beyond the edge.
+        let typical = Real::max(typical, greatest * LEAST_TYPICAL_SHARE);
+        Majorant {
+            greatest,
+            typical: typical.min(greatest),
+        }
     }
 }
 

@@ -20,6 +20,7 @@ macro_rules! with_camera {
 }
 
 pub mod adversary;
+pub mod caps;
 pub mod certificate;
 pub mod command;
 pub mod direct_port;

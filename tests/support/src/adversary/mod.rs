@@ -7,7 +7,7 @@ mod light;
 mod tile;
 
 pub use cluster::ClusterLight;
-pub use draw::fresnel;
+pub use draw::{cone_angles, exponent, fresnel, sharpness};
 pub use light::Light;
 pub use tile::{Drawn, Tile};
 
@@ -118,7 +118,7 @@ impl Bound {
     }
 }
 
-fn chance(rng: &mut Rng, share: f64) -> bool {
+pub fn chance(rng: &mut Rng, share: f64) -> bool {
     rng.f64() < share
 }
 
@@ -127,7 +127,7 @@ pub fn log_uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
 }
 
 /// Numbers in [low, 1], mostly over decades from both ends.
-fn up_to_one(rng: &mut Rng, low: f64) -> f64 {
+pub fn up_to_one(rng: &mut Rng, low: f64) -> f64 {
     match rng.u8(0..10) {
         0 => 1.0,
         1 => low,
@@ -137,7 +137,7 @@ fn up_to_one(rng: &mut Rng, low: f64) -> f64 {
     }
 }
 
-fn unit_vector(rng: &mut Rng) -> Vector {
+pub fn unit_vector(rng: &mut Rng) -> Vector {
     if chance(rng, 0.1) {
         let mut axis = [0.0; 3];
         axis[rng.usize(0..3)] = if rng.bool() { 1.0 } else { -1.0 };
@@ -151,6 +151,6 @@ fn unit_vector(rng: &mut Rng) -> Vector {
     }
 }
 
-fn direction(v: Vector) -> Direction {
+pub fn direction(v: Vector) -> Direction {
     Direction::new(v.to_f32()).expect("unit vectors have a direction")
 }

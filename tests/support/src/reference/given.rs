@@ -1,7 +1,7 @@
 //! The crate's own Fresnel factors by the model's parameters, as one type; and a caller's own masking.
 
 use stochastic_light_culling as crate_under_test;
-use stochastic_light_culling::{Conductor, Dielectric, Error, NoFresnel, Schlick};
+use stochastic_light_culling::{Conductor, Dielectric, Error, FresnelMajorant, NoFresnel, Schlick};
 
 use super::Fresnel;
 
@@ -42,6 +42,15 @@ impl crate_under_test::Fresnel for GivenFresnel {
             Self::Schlick(fresnel) => fresnel.maximum(smallest_cosine),
             Self::Dielectric(fresnel) => fresnel.maximum(smallest_cosine),
             Self::Conductor(fresnel) => fresnel.maximum(smallest_cosine),
+        }
+    }
+
+    fn majorant(&self) -> FresnelMajorant {
+        match self {
+            Self::None => NoFresnel.majorant(),
+            Self::Schlick(fresnel) => fresnel.majorant(),
+            Self::Dielectric(fresnel) => fresnel.majorant(),
+            Self::Conductor(fresnel) => fresnel.majorant(),
         }
     }
 }

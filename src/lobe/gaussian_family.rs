@@ -1,0 +1,88 @@
+use super::spherical_gaussian::SphericalGaussians;
+use super::{Cap, Caps, LobeFamily, Majorant, ReceiverLobe, SphericalGaussian};
+use crate::num::{Real, Single, Vector3, exponential, round_up};
+
+/// Budget for the share c/(λ + 1).
+const SHARE_ROUNDINGS: u16 = 2;
+/// Budget for the value by the greatest share.
+const VALUE_ROUNDINGS: u16 = 8;
+
+/// What stands for many [`SphericalGaussian`]s: a cap of axes, a range of sharpnesses λ, the greatest amplitude c, and
+/// the greatest c/(λ + 1).
+///
+/// The sharper of two SGs that reflect alike has the greater amplitude. So there are two bounds at the least distance d
+/// of an axis, and the majorant is the lesser: the greatest amplitude with the least sharpness, and the greatest share
+/// times (λ + 1) exp(−½λd²), which is greatest at λ = 2/d² − 1, clamped to the range. Both nest, as maxima over sets that
+/// grow with the family, of functions that fall with d.
+///
+/// Empty lobes reflect nothing, so a union leaves them out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SphericalGaussianFamily {
+    axes: Cap,
+    sharpness: [f32; 2],
+    amplitude: f32,
+    /// The greatest c/(λ + 1)
+    share: f32,
+}
+
+impl ReceiverLobe for SphericalGaussian {
+    type Family = SphericalGaussianFamily;
+
+    fn family(&self) -> SphericalGaussianFamily {
+        let (sharpness, amplitude) = (self.sharpness(), self.amplitude());
+        SphericalGaussianFamily {
+            axes: Cap::of_axis(self.axis()),
+            sharpness: [sharpness; 2],
+            amplitude,
+            share: round_up(amplitude / (sharpness + 1.0), SHARE_ROUNDINGS).max(f32::MIN_POSITIVE),
+        }
+    }
+}
+
+impl LobeFamily for SphericalGaussianFamily {
+    fn union(mut families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
+        let lit = families.clone().filter(|family| family.amplitude > 0.0);
+        let Some(axes) = Cap::union(lit.clone().map(|family| family.axes)) else {
+            return families.next();
+        };
+        let rest = lit.reduce(|a, b| Self {
+            sharpness: [
+                a.sharpness[0].min(b.sharpness[0]),
+                a.sharpness[1].max(b.sharpness[1]),
+            ],
+            amplitude: a.amplitude.max(b.amplitude),
+            share: a.share.max(b.share),
+            ..a
+        })?;
+        Some(Self { axes, ..rest })
+    }
+
+    #[inline(always)]
+    fn majorant_in_lanes<N: Single>(&self, cap: &Caps<N>) -> Majorant<N> {
+        let [least, most] = self.sharpness;
+        let amplitude = cap.splat(self.amplitude);
+        let widest = SphericalGaussians {
+            axis: Vector3::splat(amplitude, (*self.axes.axis()).into()),
+            sharpness: cap.splat(least),
+            amplitude,
+        };
+        let axes = self.axes.splat(amplitude);
+        let by_amplitude = widest.majorant(&axes, cap);
+        let [distance, _] = cap.distances(&axes);
+        let worst = amplitude.splat(2.0) / (distance * distance) - 1.0;
+        let worst = Real::min(Real::max(worst, worst.splat(least)), worst.splat(most));
+        let squared = distance.widen() * distance.widen();
+        let power = exponential(-(worst.widen() * 0.5 * squared));
+        let by_share = N::narrow((worst.widen() + 1.0) * f64::from(self.share) * power);
+        // It may underflow.
+        let by_share = Real::max(
+            by_share.round_up(VALUE_ROUNDINGS),
+            worst.splat(f32::MIN_POSITIVE),
+        );
+        let greatest = by_share.min(by_amplitude.greatest);
+        Majorant {
+            greatest,
+            typical: by_amplitude.typical.min(greatest),
+        }
+    }
+}

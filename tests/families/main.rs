@@ -1,0 +1,296 @@
+//! The majorant of a family of lobes within a cap of directions: no member is greater, whether the model computes it or
+//! the crate; and of nested families in nested caps the greater has the greater majorant.
+//!
+//! `CASES=100000000 cargo test --release --test families -- --nocapture` is the long run.
+
+mod members;
+
+use std::f64::consts::TAU;
+
+use fastrand::Rng;
+use members::{Member, surfaces};
+use rayon::prelude::*;
+use stochastic_light_culling::{
+    Cap, ConstantLobe, Direction, Ggx, GgxFamily, GgxLobe, HeightCorrelated, Incidence,
+    LambertFamily, LambertLobe, Lobe, LobeFamily, LobeSum, NoFresnel, ReceiverLobe, Separable,
+};
+use support::adversary::{direction, log_uniform, unit_vector};
+use support::caps::{nearest, spiral};
+use support::generators::Lit;
+use support::reference::{MaskedAlone, Masking, Vector};
+
+const CAPS_PER_FAMILY: usize = 32;
+/// 2⁻²⁴
+const UNIT_ROUNDOFF: f64 = f32::EPSILON as f64 / 2.0;
+
+/// So many cases, or as many as the environment variable CASES says.
+fn cases() -> usize {
+    std::env::var("CASES").map_or(300_000, |cases| cases.parse().expect("a number"))
+}
+
+/// Draws families until as many caps are tested as are wanted.
+fn search(in_family: impl Fn(&mut Rng) -> usize + Sync + Send) {
+    const BATCH: usize = 1024;
+    let batch = |seed| {
+        let (mut rng, mut tested) = (Rng::with_seed(seed), 0);
+        while tested < BATCH {
+            tested += in_family(&mut rng);
+        }
+        tested
+    };
+    let batches = 0..(cases() / BATCH + 1) as u64;
+    let tested: usize = batches.into_par_iter().map(batch).sum();
+    println!("{tested} caps");
+}
+
+/// Caps of any size, most of them where a member is great or small.
+fn cap<L>(rng: &mut Rng, members: &[Member<L>]) -> Cap {
+    let aim = members[rng.usize(0..members.len())].likely_directions(rng);
+    let offset = unit_vector(rng) * log_uniform(rng, 1e-7, 1.0);
+    let chord = match rng.u8(0..8) {
+        0 => 0.0,
+        1 => 2.0,
+        _ => log_uniform(rng, 1e-6, 2.0),
+    };
+    let axis = direction((aim[rng.usize(0..4)] + offset).unit());
+    Cap::new(axis, chord as f32).expect("in range")
+}
+
+/// The greatest value of a member in the cap, of those that are looked at: as the model has it, and the crate.
+fn greatest<L: Lobe>(rng: &mut Rng, member: &Member<L>, cap: &Cap) -> (f64, f32) {
+    let axis = Vector::from(*cap.axis()).unit();
+    let edge = (axis + unit_vector(rng) * 3.0).unit();
+    let likely = member.likely_directions(rng).map(|to| nearest(cap, to));
+    let directions = likely.into_iter().chain([axis, nearest(cap, edge)]);
+    directions.fold((0.0, 0.0), |(model, own): (f64, f32), outgoing| {
+        let value = member.lobe.value(*direction(outgoing));
+        (model.max(member.value(outgoing)), own.max(value))
+    })
+}
+
+fn check<L: ReceiverLobe>(rng: &mut Rng, members: &[Member<L>]) -> usize {
+    let families = || members.iter().map(|member| member.lobe.family());
+    let family = L::Family::union(families()).expect("of one at least");
+    let part = L::Family::union(families().take(1 + rng.usize(0..members.len())));
+    let part = part.expect("of one at least");
+    let whole = L::Family::union([part, family].into_iter()).expect("of two");
+    for _ in 0..CAPS_PER_FAMILY {
+        let cap = cap(rng, members);
+        let most = family.greatest_within(&cap);
+        for member in members {
+            let (model, own) = greatest(rng, member, &cap);
+            let alone = member.lobe.maximum_within(&cap);
+            // The model's own rounding.
+            let model = model * (1.0 - 1e-12);
+            let lobe = &member.lobe;
+            assert!(
+                model <= f64::from(alone) && own <= alone,
+                "{model} {own} {alone} {cap:?}"
+            );
+            assert!(
+                model <= f64::from(most) && own <= most,
+                "{model} or {own} > {most} in {cap:?}: {:?} {:?}",
+                lobe.value(*cap.axis()),
+                member.surface,
+            );
+        }
+        check_nesting(rng, &cap, (&part, &whole));
+    }
+    CAPS_PER_FAMILY
+}
+
+/// A cap around another cap and a union around its part have the greater majorant. Each step may cost 96u of a chord and
+/// 512u of the majorant.
+fn check_nesting<F: LobeFamily>(rng: &mut Rng, cap: &Cap, (part, whole): (&F, &F)) {
+    let axis = Vector::from(*cap.axis()).unit();
+    let offset = match rng.u8(0..3) {
+        0 => 0.0,
+        _ => log_uniform(rng, 1e-6, 1.0),
+    };
+    let around = direction((axis + unit_vector(rng) * offset).unit());
+    let apart = (Vector::from(*around).unit() - axis).length();
+    let chord = apart + f64::from(cap.chord()) + 96.0 * UNIT_ROUNDOFF;
+    let greater = Cap::new(around, chord.min(2.0) as f32).expect("in range");
+    let [less, more] = [part.greatest_within(cap), whole.greatest_within(&greater)].map(f64::from);
+    assert!(
+        less <= more * (1.0 + 512.0 * UNIT_ROUNDOFF),
+        "{less} in {cap:?}, but {more} in {greater:?}: {part:?} {whole:?}"
+    );
+}
+
+/// Draws members of a kind, and checks them.
+macro_rules! check {
+    ($rng:ident, $members:expr) => {{
+        let members = $members;
+        check($rng, &members)
+    }};
+}
+
+#[test]
+fn no_ggx_lobe_is_greater() {
+    search(|rng| match rng.u8(0..5) {
+        0 | 1 => {
+            check!(
+                rng,
+                members::ggx::<HeightCorrelated>(rng, Masking::HeightCorrelated)
+            )
+        }
+        2 | 3 => check!(rng, members::ggx::<Separable>(rng, Masking::Separable)),
+        _ => check!(rng, members::ggx::<MaskedAlone>(rng, Masking::MaskedAlone)),
+    });
+}
+
+#[test]
+fn no_other_lobe_is_greater() {
+    search(|rng| match rng.u8(0..9) {
+        0 | 1 => {
+            let masking = Masking::HeightCorrelated;
+            check!(rng, members::anisotropic::<HeightCorrelated>(rng, masking))
+        }
+        2 => check!(
+            rng,
+            members::anisotropic::<Separable>(rng, Masking::Separable)
+        ),
+        3 => check!(rng, members::lambert(rng)),
+        4 => check!(rng, members::phong(rng)),
+        5 => check!(rng, members::gaussian(rng)),
+        6 => check!(rng, members::transformed_cosine(rng)),
+        _ => check!(rng, members::varnished(rng)),
+    });
+}
+
+#[test]
+fn no_spot_light_is_greater() {
+    search(|rng| {
+        let lit = surfaces(rng)[0];
+        let members = [members::spot(rng, &lit)];
+        for _ in 0..CAPS_PER_FAMILY {
+            let cap = cap(rng, &members);
+            let (model, own) = greatest(rng, &members[0], &cap);
+            let most = members[0].lobe.maximum_within(&cap);
+            let model = model * (1.0 - 1e-12);
+            assert!(
+                model <= f64::from(most) && own <= most,
+                "{model} {own} {most}"
+            );
+        }
+        CAPS_PER_FAMILY
+    });
+}
+
+/// The majorants of a lobe and of its family within a cap of a thousandth, over its greatest value there.
+fn looseness(rng: &mut Rng, alpha: f32) -> Option<[f64; 2]> {
+    let normal = unit_vector(rng);
+    let side = normal.orthogonal();
+    let side = side.turned(normal.cross(side), TAU * rng.f64());
+    let incoming = normal.turned(side, (0.2 + 0.8 * rng.f64()).acos());
+    let lit = Lit::new(normal, incoming);
+    let member = members::polished(alpha, &lit);
+    let offset = unit_vector(rng) * (f64::from(alpha) * log_uniform(rng, 1e-2, 3.0));
+    let axis = (lit.surface.mirror() + offset).unit();
+    if lit.surface.normal.dot(axis) < 0.1 {
+        return None;
+    }
+    let cap = Cap::new(direction(axis), 1e-3).expect("in range");
+    let likely: Vec<_> = (0..8).flat_map(|_| member.likely_directions(rng)).collect();
+    let directions = spiral(&cap).chain(likely).map(|to| nearest(&cap, to));
+    let greatest = directions.map(|to| member.value(to)).fold(0.0, f64::max);
+    let majorants = [
+        member.lobe.maximum_within(&cap),
+        member.lobe.family().greatest_within(&cap),
+    ];
+    Some(majorants.map(|most| f64::from(most) / greatest))
+}
+
+#[test]
+fn majorants_become_the_lobes_as_caps_close() {
+    for alpha in [0.003, 0.01, 0.03, 0.06, 0.1, 0.2, 0.3, 0.5, 1.0] {
+        let mut rng = Rng::with_seed(1);
+        let each = (0..4000).filter_map(|_| looseness(&mut rng, alpha));
+        let worst = each.fold([1.0_f64; 2], |[a, b], [c, d]| [a.max(c), b.max(d)]);
+        println!("α = {alpha}: {worst:.4?}");
+        // Where the cap is not small against α, nothing near the value bounds it.
+        let most = if alpha >= 0.2 {
+            1.02
+        } else {
+            1.0 + 6e-3 / f64::from(alpha)
+        };
+        assert!(worst[0] <= most && worst[1] <= most);
+    }
+}
+
+#[test]
+fn black_surfaces_need_no_light() {
+    let (up, down) = (Direction::Z, -Direction::Z);
+    let ggx = |alpha, incoming| {
+        let incidence = Incidence {
+            normal: up,
+            incoming,
+        };
+        GgxLobe::new(Ggx::new(alpha).unwrap(), NoFresnel, incidence)
+    };
+    // One that the eye sees from behind, and one that reflects nothing.
+    let (unseen, black) = (ggx(0.5, down), LambertLobe::new(0.0, up).unwrap());
+    assert_eq!(unseen.family().greatest_within(&Cap::all()), 0.0);
+    assert_eq!(black.family().greatest_within(&Cap::all()), 0.0);
+    let both = LobeSum::new(black, unseen).family();
+    assert_eq!(both.greatest_within(&Cap::all()), 0.0);
+    let weightless = LobeSum::weighted([0.0; 2], LambertLobe::new(1.0, up).unwrap(), ggx(0.5, up));
+    let weightless = weightless.unwrap();
+    assert!(weightless.is_empty());
+    assert_eq!(weightless.family().greatest_within(&Cap::all()), 0.0);
+
+    // They do not widen a family.
+    let lit = ggx(0.1, up).family();
+    assert_eq!(
+        LobeFamily::union([unseen.family(), lit].into_iter()),
+        Some(lit)
+    );
+    assert_eq!(
+        LobeFamily::union([unseen.family(); 2].into_iter()),
+        Some(unseen.family())
+    );
+    assert_eq!(
+        LobeFamily::union([black.family(); 2].into_iter()),
+        Some(black.family())
+    );
+    let none: [LambertLobe; 0] = [];
+    assert_eq!(
+        LobeFamily::union(none.iter().map(LambertLobe::family)),
+        None::<LambertFamily>
+    );
+}
+
+#[test]
+fn opposite_axes_and_mirrors_have_finite_bounds() {
+    let mirror = |normal| {
+        let ggx = Ggx::new(Ggx::MIN_ROUGHNESS).unwrap();
+        GgxLobe::new(ggx, NoFresnel, Incidence::head_on(normal)).family()
+    };
+    let both = LobeFamily::union([Direction::Z, -Direction::Z].map(mirror).into_iter());
+    let both: GgxFamily = both.unwrap();
+    let upward = Cap::new(Direction::Z, 0.0).unwrap();
+    let most = both.greatest_within(&upward);
+    assert!(most.is_finite() && most >= mirror(Direction::Z).greatest_within(&upward));
+    // Straight behind the eye, where the half vector vanishes.
+    let behind = mirror(Direction::Z).greatest_within(&Cap::new(-Direction::Z, 1.9).unwrap());
+    assert!(behind.is_finite());
+}
+
+#[test]
+fn unions_of_caps_hold_them() {
+    let around = |axis, chord| Cap::new(axis, chord).unwrap();
+    assert_eq!(Cap::union([].into_iter()), None);
+    let narrow = around(Direction::X, 0.1);
+    assert_eq!(Cap::union([narrow; 3].into_iter()), Some(narrow));
+    let both = Cap::union([narrow, around(Direction::Y, 0.2)].into_iter()).unwrap();
+    let to_y = (*both.axis() - *Direction::Y).length();
+    assert!(both.chord() >= to_y + 0.2 && both.chord() < to_y + 0.2001);
+    // No mean: any axis holds all.
+    let opposite = Cap::union([narrow, around(-Direction::X, 0.0)].into_iter()).unwrap();
+    assert_eq!(opposite.chord(), 2.0);
+    assert_eq!(
+        ConstantLobe.family().greatest_within(&both),
+        ConstantLobe.maximum_within(&narrow)
+    );
+}
