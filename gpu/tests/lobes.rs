@@ -1,0 +1,154 @@
+//! Lobes on a GPU are those of the exact model to 8 units in the last place, and what one unit of each input makes.
+
+use bytemuck::{Pod, Zeroable};
+use fastrand::Rng;
+use gpu::{Gpu, Map};
+use stochastic_light_culling::{
+    Direction, Ggx, GgxLobe, GpuLight, Incidence, LambertLobe, NoFresnel, Schlick, Vpl, glam::Vec3,
+    wgsl,
+};
+use support::adversary::{Light, Reach};
+use support::reference::exact::{Exact, reflectance, value};
+use support::reference::{Brdf, Fresnel, Masking};
+use twofloat::TwoFloat as Real;
+
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Case {
+    light: GpuLight,
+    outgoing: [f32; 3],
+    kind: u32,
+}
+
+const CASE: &str = "struct Case { light: SlcLight, outgoing: vec3f, kind: u32 }";
+
+/// A light with the lobe of `light`, and the function that evaluates it.
+fn record(light: &Light) -> Option<(GpuLight, u32)> {
+    let incidence = Incidence {
+        normal: light.normal,
+        incoming: light.incoming,
+    };
+    let vpl = (light.position, light.flux);
+    Some(match light.brdf {
+        Brdf::Lambert { albedo } => {
+            let lobe = LambertLobe::new(albedo, light.normal).unwrap();
+            (GpuLight::from(&Vpl::new(vpl.0, vpl.1, lobe).unwrap()), 0)
+        }
+        Brdf::Ggx {
+            roughness,
+            fresnel,
+            masking: Masking::HeightCorrelated,
+        } => {
+            let ggx = Ggx::new(roughness).unwrap();
+            match fresnel {
+                Fresnel::None => {
+                    let lobe = GgxLobe::new(ggx, NoFresnel, incidence);
+                    (GpuLight::from(&Vpl::new(vpl.0, vpl.1, lobe).unwrap()), 1)
+                }
+                Fresnel::Schlick(f0) => {
+                    let lobe = GgxLobe::new(ggx, Schlick::new(f0).unwrap(), incidence);
+                    (GpuLight::from(&Vpl::new(vpl.0, vpl.1, lobe).unwrap()), 2)
+                }
+                _ => return None,
+            }
+        }
+        _ => return None,
+    })
+}
+
+/// The exact value of a lobe of directions that are unit vectors, or nearly so.
+fn exact(brdf: Brdf, [normal, incoming, outgoing]: [Exact; 3]) -> f64 {
+    value(brdf, normal, incoming, outgoing).hi()
+}
+
+fn units(vectors: [Vec3; 3]) -> [Exact; 3] {
+    vectors.map(|v| Exact::from(v).unit())
+}
+
+/// By how much the value changes for one unit in the last place of each component of its directions, for their lengths,
+/// which are off from 1 as well, and for two units of the half angle's cosine, which F is a function of.
+fn of_inputs(light: &Light, vectors: [Vec3; 3]) -> f64 {
+    let value = exact(light.brdf, units(vectors));
+    let mut sum = 0.0;
+    for vector in 0..3 {
+        for i in 0..3 {
+            let mut moved = vectors;
+            moved[vector][i] *= 1.0 + f32::EPSILON;
+            sum += (exact(light.brdf, units(moved)) - value).abs();
+        }
+    }
+    let Brdf::Ggx {
+        roughness,
+        fresnel,
+        masking,
+    } = light.brdf
+    else {
+        return sum;
+    };
+    let without = Brdf::Ggx {
+        roughness,
+        fresnel: Fresnel::None,
+        masking,
+    };
+    let rest = exact(without, units(vectors));
+    let of_lengths = (exact(without, vectors.map(Exact::from)) - rest).abs();
+    let [_, incoming, outgoing] = units(vectors);
+    let both = incoming + outgoing;
+    let cosine = both.dot(both).sqrt().hi() * 0.5;
+    let at = |cosine: f64| reflectance(fresnel, Real::from(cosine)).hi();
+    let of_cosine = (at(cosine - 2.0 * f64::from(f32::EPSILON)) - at(cosine)).abs();
+    sum + of_lengths * at(cosine) + of_cosine * rest
+}
+
+#[test]
+fn lobes_are_exact_to_eight_units_and_their_inputs() {
+    let gpu = Gpu::new().unwrap();
+    let map = Map {
+        sources: &[wgsl::NUM, wgsl::LOBE, CASE],
+        input: "Case",
+        output: "f32",
+        body: "
+            switch input.kind {
+                case 0u: { return slc_lambert(input.light.fresnel.x, input.light.normal, input.outgoing); }
+                case 1u: { return slc_ggx(input.light, input.outgoing); }
+                default: { return slc_ggx_schlick(input.light, input.outgoing); }
+            }",
+    };
+    let mut rng = Rng::with_seed(3);
+    let mut lights = Vec::new();
+    let mut cases = Vec::new();
+    while cases.len() < 60_000 {
+        let light = Light::draw(&mut rng);
+        let Some((record, kind)) = record(&light) else {
+            continue;
+        };
+        for _ in 0..4 {
+            let [x, y, z] = light.outgoing(&mut rng).0.map(|x| x.hi() as f32);
+            let Ok(outgoing) = Direction::new(Vec3::new(x, y, z)) else {
+                continue;
+            };
+            lights.push(light);
+            cases.push(Case {
+                light: record,
+                outgoing: outgoing.to_array(),
+                kind,
+            });
+        }
+    }
+    let found: Vec<f32> = gpu.map(&map, &cases).unwrap();
+    let mut greatest = 0.0_f64;
+    for ((light, case), found) in lights.iter().zip(&cases).zip(found) {
+        let vectors = [*light.normal, *light.incoming, Vec3::from(case.outgoing)];
+        let value = exact(light.brdf, units(vectors));
+        let off = (f64::from(found) - value).abs();
+        // Products on the way may be subnormal, and then zero.
+        let allowed = 8.0 * f64::from(f32::EPSILON) * value + of_inputs(light, vectors) + 1e-30;
+        assert!(
+            off <= allowed,
+            "{found} and not {value} ± {allowed}: {light:?} to {:?}",
+            case.outgoing
+        );
+        greatest = greatest.max(off / allowed);
+    }
+    println!("at most {greatest:.2} of what is allowed");
+}
