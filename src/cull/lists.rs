@@ -147,6 +147,17 @@ impl LightLists {
         }
     }
 
+    /// Appends `lists` to these: each to the slot that `slots` gives, in which nothing is.
+    #[cfg(feature = "rayon")]
+    pub(super) fn append_at(&mut self, slots: &[usize], lists: &Self) {
+        let start = self.len;
+        self.room_for(lists.len)[..lists.len].copy_from_slice(lists.lights());
+        self.len += lists.len;
+        for (slot, range) in slots.iter().zip(&lists.ranges) {
+            self.ranges[*slot] = range.map(|end| (start + end as usize) as u32);
+        }
+    }
+
     /// The memory in use, with what is to spare.
     #[cfg(all(test, feature = "rayon"))]
     pub(super) fn bytes(&self) -> usize {

@@ -32,7 +32,7 @@ fn blind() -> Receivers<Blind, impl Family<Blind, ()>, ()> {
 }
 
 /// Compares the lists of random scenes. Returns how many pairs were accepted, and how many pairs lists held.
-fn check<L: Lobe + Clone, F: LobeFamily, M: Family<F, V>, V>(
+fn check<L: Lobe + Clone + Sync, F: LobeFamily, M: Family<F, V>, V: Sync>(
     lobe: fn(&mut Rng) -> L,
     receivers: &Receivers<F, M, V>,
     seed: u64,
@@ -73,12 +73,21 @@ fn check<L: Lobe + Clone, F: LobeFamily, M: Family<F, V>, V>(
         let parts = [1, tile_size.min(2), tile_size][rng.usize(..3)];
         let mut tiles = TileReceivers::new(&grid, parts, intervals).expect("few");
         let parts_grid = tiles.parts_grid();
-        tiles.fill(|part, interval| {
+        let cluster = |part: [u32; 2], interval| {
             let points = points(parts_grid, part, interval);
             let scale = 1.0 + (part[0] / parts % 3) as f32;
             ReceiverCluster::of(points.map(|(pixel, (family, _))| (pixel.position, *family)))
                 .map(|cluster| cluster.with_delta_scale(scale).expect("in range"))
-        });
+        };
+        tiles.fill(cluster);
+        #[cfg(feature = "rayon")]
+        {
+            let mut filled_by_many = TileReceivers::new(&grid, parts, intervals).expect("few");
+            filled_by_many.fill_in_parallel(cluster);
+            for tile in grid.tiles() {
+                assert_eq!(filled_by_many.of(tile, 0), tiles.of(tile, 0));
+            }
+        }
 
         let least = 1e-3;
         let (mut lists, mut drawn) = (LightLists::new(), WeightedLists::new());
@@ -95,6 +104,22 @@ fn check<L: Lobe + Clone, F: LobeFamily, M: Family<F, V>, V>(
             culler
                 .draw(probability, &batch, &tiles, &mut drawn)
                 .expect("few");
+            #[cfg(feature = "rayon")]
+            {
+                let (mut many, mut drawn_by_many) = (LightLists::new(), WeightedLists::new());
+                let of_many = culler.cull_in_parallel(&batch, &tiles, &mut many);
+                of_many.expect("few");
+                let of_many =
+                    culler.draw_in_parallel(probability, &batch, &tiles, &mut drawn_by_many);
+                of_many.expect("few");
+                for tile in grid.tiles() {
+                    for interval in 0..intervals {
+                        assert_eq!(many.of(tile, interval), lists.of(tile, interval));
+                        let drawn = drawn.of(tile, interval);
+                        assert_eq!(drawn_by_many.of(tile, interval), drawn);
+                    }
+                }
+            }
             if lanes > 4 {
                 assert!(before == lists && drawn_before == *drawn.lists());
                 assert!(weights == drawn.weights());

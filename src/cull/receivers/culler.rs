@@ -4,7 +4,7 @@ use fearless_simd::{Level, dispatch};
 
 use super::lists::WeightedLists;
 use super::tiles::TileReceivers;
-use super::walk::{MayBeAccepted, PieceLists, Rule, Scene};
+use super::walk::{MayBeAccepted, Output, PieceLists, Rule, Scene};
 use crate::base::{Error, number_in};
 use crate::cull::culler::{at_most, widest};
 use crate::cull::{LightLists, ShadingBatch};
@@ -55,12 +55,14 @@ use crate::lobe::{Lobe, LobeFamily};
 pub struct ReceiverCuller {
     roulette: Roulette,
     least_distance_squared: f32,
-    level: Level,
+    pub(super) level: Level,
     /// 0, 1, 2 and so on.
-    lights: Vec<u32>,
+    pub(super) lights: Vec<u32>,
     /// One for the parts of a tile, and one for each level of blocks.
     scratch: Vec<PieceLists>,
-    pair_tests: u64,
+    #[cfg(feature = "rayon")]
+    pub(super) workers: Vec<super::parallel::Worker>,
+    pub(super) pair_tests: u64,
 }
 
 impl ReceiverCuller {
@@ -74,6 +76,8 @@ impl ReceiverCuller {
             level: widest(),
             lights: Vec::new(),
             scratch: Vec::new(),
+            #[cfg(feature = "rayon")]
+            workers: Vec::new(),
             pair_tests: 0,
         }
     }
@@ -122,7 +126,7 @@ impl ReceiverCuller {
     ) -> Result<(), Error> {
         let mut output = WeightedLists::of_lists(core::mem::take(lists));
         let result = self.write(MayBeAccepted, lights, tiles, &mut output);
-        *lists = output.lists;
+        *lists = output.into_lists();
         result
     }
 
@@ -147,25 +151,39 @@ impl ReceiverCuller {
         rule: R,
         lights: &ShadingBatch<L>,
         tiles: &TileReceivers<F>,
-        output: &mut WeightedLists,
+        lists: &mut WeightedLists,
     ) -> Result<(), Error> {
-        output.reset(tiles);
+        lists.reset(tiles);
         self.pair_tests = 0;
-        self.lights
-            .extend(self.lights.len() as u32..lights.len() as u32);
+        self.number(lights.len());
+        let scene = self.scene(rule, lights, tiles);
+        let all = &self.lights[..lights.len()];
         let steps = tiles.levels_of_blocks() + 1;
         self.scratch
             .resize_with(steps.max(self.scratch.len()), PieceLists::default);
-        let scene = Scene {
+        let (scratch, pair_tests) = (&mut self.scratch[..steps], &mut self.pair_tests);
+        let mut output = Output { lists, tiles: None };
+        dispatch!(self.level, simd => scene.walk(simd, tiles.root(), all, scratch, &mut output, pair_tests));
+        lists.finish(tiles)
+    }
+
+    /// Makes sure that there are numbers for so many lights.
+    pub(super) fn number(&mut self, lights: usize) {
+        self.lights.extend(self.lights.len() as u32..lights as u32);
+    }
+
+    pub(super) fn scene<'a, L: Lobe, F: LobeFamily, R: Rule>(
+        &self,
+        rule: R,
+        lights: &'a ShadingBatch<L>,
+        tiles: &'a TileReceivers<F>,
+    ) -> Scene<'a, L, F, R> {
+        Scene {
             lights,
             tiles,
             roulette: self.roulette,
             least_distance_squared: self.least_distance_squared,
             rule,
-        };
-        let all = &self.lights[..lights.len()];
-        let (scratch, pair_tests) = (&mut self.scratch[..steps], &mut self.pair_tests);
-        dispatch!(self.level, simd => scene.walk(simd, tiles.root(), all, scratch, output, pair_tests));
-        output.finish(tiles)
+        }
     }
 }

@@ -57,6 +57,11 @@ impl WeightedLists {
         }
     }
 
+    /// The lists without weights.
+    pub(super) fn into_lists(self) -> LightLists {
+        self.lists
+    }
+
     /// Clears the lists and creates an empty one for each slot of `tiles`.
     pub(super) fn reset<F: LobeFamily>(&mut self, tiles: &TileReceivers<F>) {
         let size = tiles.size().map(|n| n as usize);
@@ -77,6 +82,23 @@ impl WeightedLists {
         if !weights.is_empty() {
             grow(&mut self.weights, start + len, 0.0);
             self.weights[start..][..len].copy_from_slice(weights);
+        }
+    }
+
+    /// Clears the lists and creates `count` empty ones.
+    #[cfg(feature = "rayon")]
+    pub(super) fn reset_to(&mut self, count: usize) {
+        self.lists.reset([count, 1], 1);
+    }
+
+    /// Appends the lists of these tiles.
+    #[cfg(feature = "rayon")]
+    pub(super) fn append_all(&mut self, tiles: &[usize], other: &Self, weighs: bool) {
+        let (start, len) = (self.lists.len(), other.lists.len());
+        self.lists.append_at(tiles, &other.lists);
+        if weighs {
+            grow(&mut self.weights, start + len, 0.0);
+            self.weights[start..start + len].copy_from_slice(&other.weights[..len]);
         }
     }
 

@@ -13,6 +13,8 @@
 
 mod culler;
 mod lists;
+#[cfg(feature = "rayon")]
+mod parallel;
 mod tiles;
 mod walk;
 

@@ -1,5 +1,8 @@
 use alloc::vec::Vec;
 
+#[cfg(feature = "rayon")]
+use rayon::prelude::*;
+
 use crate::base::Error;
 use crate::light::{Roulette, Vpl};
 use crate::lobe::{Lobe, LobeFamily};
@@ -66,7 +69,7 @@ enum Division {
 }
 
 /// Where a cluster is: its level, and its index there.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Node {
     pub level: usize,
     pub index: usize,
@@ -147,13 +150,52 @@ impl<F: LobeFamily> TileReceivers<F> {
     /// `receivers` gives those of a part = \[column, row\] of [`parts_grid`](Self::parts_grid) and an interval;
     /// `None` is an interval without receivers, which needs no light.
     pub fn fill(&mut self, mut receivers: impl FnMut([u32; 2], u32) -> Option<ReceiverCluster<F>>) {
+        let (place_of, slots) = self.slots();
+        for (slot, cluster) in slots.iter_mut().enumerate() {
+            let (part, interval) = place_of(slot);
+            *cluster = receivers(part, interval);
+        }
+        self.merge();
+    }
+
+    /// Does what [`fill`](Self::fill) does on the threads of rayon's current pool.
+    #[cfg(feature = "rayon")]
+    pub fn fill_in_parallel(
+        &mut self,
+        receivers: impl Fn([u32; 2], u32) -> Option<ReceiverCluster<F>> + Sync,
+    ) {
+        let (place_of, slots) = self.slots();
+        slots
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(slot, cluster)| {
+                let (part, interval) = place_of(slot);
+                *cluster = receivers(part, interval);
+            });
+        self.merge();
+    }
+
+    /// The clusters to fill, and the part and interval of each by its index.
+    fn slots(
+        &mut self,
+    ) -> (
+        impl Fn(usize) -> ([u32; 2], u32) + use<F>,
+        &mut [Option<ReceiverCluster<F>>],
+    ) {
         let intervals = self.intervals;
         let Level { size, clusters, .. } = &mut self.levels[0];
-        for (slot, cluster) in clusters.iter_mut().enumerate() {
+        let columns = size[0];
+        let place_of = move |slot: usize| {
             let part = slot / intervals;
-            let part = [part % size[0], part / size[0]].map(|n| n as u32);
-            *cluster = receivers(part, (slot % intervals) as u32);
-        }
+            let part = [part % columns, part / columns].map(|n| n as u32);
+            (part, (slot % intervals) as u32)
+        };
+        (place_of, clusters)
+    }
+
+    /// Merges the clusters of each level to those of the next.
+    fn merge(&mut self) {
+        let intervals = self.intervals;
         for level in 1..self.levels.len() {
             let (lesser, greater) = self.levels.split_at_mut(level);
             let (
@@ -221,6 +263,26 @@ impl<F: LobeFamily> TileReceivers<F> {
     /// The number of levels above that of the tiles.
     pub(super) fn levels_of_blocks(&self) -> usize {
         self.levels.len() - 1 - self.level_of_tiles()
+    }
+
+    /// The nodes of the greatest pieces of the image of which there are at least `count`, but that are blocks.
+    #[cfg(feature = "rayon")]
+    pub(super) fn blocks(&self, count: usize) -> impl Iterator<Item = Node> {
+        let blocks = self.level_of_tiles() + 1..self.levels.len();
+        let is_enough = |level: &usize| self.levels[*level].clusters.len() >= count;
+        let level = blocks.clone().rev().find(is_enough).unwrap_or(blocks.start);
+        (0..self.levels[level].clusters.len()).map(move |index| Node { level, index })
+    }
+
+    /// The number of depth intervals of tiles in a node that is a block, or more.
+    #[cfg(feature = "rayon")]
+    pub(super) fn most_tiles(&self, node: Node) -> usize {
+        let divisions = self.levels[self.level_of_tiles() + 1..=node.level].iter();
+        let pieces = divisions.map(|level| match level.division {
+            Division::Intervals => self.intervals,
+            _ => BLOCK * BLOCK,
+        });
+        pieces.product()
     }
 
     /// The whole image.

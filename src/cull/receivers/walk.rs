@@ -64,6 +64,26 @@ pub(super) struct Scene<'a, L, F, R> {
     pub rule: R,
 }
 
+/// Where the lists of tiles are written.
+pub(super) struct Output<'a> {
+    pub lists: &'a mut WeightedLists,
+    /// The tiles of the lists, if these are in the order in which they are written. Else each list is in its place.
+    pub tiles: Option<&'a mut Vec<usize>>,
+}
+
+impl Output<'_> {
+    /// The index of the list of a tile.
+    fn slot(&mut self, tile: usize) -> usize {
+        match &mut self.tiles {
+            None => tile,
+            Some(tiles) => {
+                tiles.push(tile);
+                tiles.len() - 1
+            }
+        }
+    }
+}
+
 /// The lists of the pieces of a node.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PieceLists {
@@ -92,7 +112,7 @@ impl PieceLists {
     }
 
     /// Appends the list of a piece, a tile.
-    fn append_to<S: Simd>(&self, simd: S, piece: usize, output: &mut WeightedLists, weighs: bool) {
+    fn append_to<S: Simd>(&self, simd: S, piece: usize, output: &mut Output, weighs: bool) {
         let (first, len) = (piece * self.room, self.lens[piece]);
         let lights = &self.lights[first..][..len + LANES];
         let weights = if weighs {
@@ -100,11 +120,36 @@ impl PieceLists {
         } else {
             &[]
         };
-        output.append(simd, self.nodes[piece].index, lights, len, weights);
+        let slot = output.slot(self.nodes[piece].index);
+        output.lists.append(simd, slot, lights, len, weights);
     }
 }
 
 impl<L: Lobe, F: LobeFamily, R: Rule> Scene<'_, L, F, R> {
+    /// Writes the lists of all tiles of `node`, a block, for those of the lights that may light it.
+    #[cfg(feature = "rayon")]
+    pub fn enter<S: Simd>(
+        &self,
+        simd: S,
+        node: Node,
+        lights: &[u32],
+        scratch: &mut [PieceLists],
+        output: &mut Output,
+        pair_tests: &mut u64,
+    ) {
+        let Some((own, scratch)) = scratch.split_last_mut() else {
+            return;
+        };
+        own.begin([node].into_iter(), lights.len(), false);
+        *pair_tests += lights.len() as u64;
+        simd.vectorize(
+            #[inline(always)]
+            || self.choose::<_, _, false>(simd, lights, own, MayBeAccepted),
+        );
+        let lights = &own.lights[..own.lens[0]];
+        self.walk(simd, node, lights, scratch, output, pair_tests);
+    }
+
     /// Writes the lists of all tiles of `node` for these of the lights. `scratch` has one element for each level of
     /// blocks from that of the node down, after one for the parts of a tile.
     pub fn walk<S: Simd>(
@@ -113,7 +158,7 @@ impl<L: Lobe, F: LobeFamily, R: Rule> Scene<'_, L, F, R> {
         node: Node,
         lights: &[u32],
         scratch: &mut [PieceLists],
-        output: &mut WeightedLists,
+        output: &mut Output,
         pair_tests: &mut u64,
     ) {
         let Some((own, scratch)) = scratch.split_last_mut() else {
