@@ -7,15 +7,8 @@ pub enum Error {
     Adapter(String),
     /// A shader, or what is bound to it, is not valid; with what the compiler or the interface says.
     Invalid(String),
-    /// A buffer holds fewer bytes than what is asked of it.
-    Size {
-        /// What the buffer is for.
-        buffer: &'static str,
-        /// Its size in bytes.
-        bytes: u64,
-        /// The least size in bytes that it needs.
-        needed: u64,
-    },
+    /// What the crate refuses, such as a buffer that is too small.
+    Refused(stochastic_light_culling::Error),
     /// The device was lost, or ran out of time.
     Device(String),
 }
@@ -30,19 +23,16 @@ impl fmt::Display for Error {
                 )
             }
             Self::Invalid(message) => write!(f, "not valid on this GPU: {message}"),
-            Self::Size {
-                buffer,
-                bytes,
-                needed,
-            } => {
-                write!(
-                    f,
-                    "the buffer of {buffer} has {bytes} bytes, and needs {needed}"
-                )
-            }
+            Self::Refused(error) => error.fmt(f),
             Self::Device(message) => write!(f, "the GPU gave up: {message}"),
         }
     }
 }
 
 impl std::error::Error for Error {}
+
+impl From<stochastic_light_culling::Error> for Error {
+    fn from(error: stochastic_light_culling::Error) -> Self {
+        Self::Refused(error)
+    }
+}

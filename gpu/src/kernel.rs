@@ -1,9 +1,9 @@
 use std::time::Duration;
 
 use wgpu::{
-    BindGroupDescriptor, BindGroupEntry, Buffer, ComputePassDescriptor, ComputePassTimestampWrites,
-    ComputePipeline, ComputePipelineDescriptor, PollType, QuerySet, QuerySetDescriptor, QueryType,
-    ShaderModuleDescriptor, ShaderSource,
+    BindGroup, BindGroupDescriptor, BindGroupEntry, Buffer, ComputePassDescriptor,
+    ComputePassTimestampWrites, ComputePipeline, ComputePipelineDescriptor, PollType, QuerySet,
+    QuerySetDescriptor, QueryType, ShaderModuleDescriptor, ShaderSource,
 };
 
 use crate::{Error, Gpu};
@@ -18,8 +18,10 @@ pub struct Kernel {
 pub struct Dispatch<'a> {
     /// The entry point.
     pub kernel: &'a Kernel,
-    /// Each `@binding` that the entry point uses, no others, with its buffer.
+    /// Each `@binding` of group 0 that the entry point uses, no others, with its buffer.
     pub buffers: &'a [(u32, &'a Buffer)],
+    /// The same of group 1.
+    pub own: &'a [(u32, &'a Buffer)],
     /// The number of workgroups along each axis.
     pub workgroups: [u32; 3],
 }
@@ -112,21 +114,14 @@ impl Gpu {
     ) {
         let Dispatch {
             kernel,
-            buffers,
             workgroups: [x, y, z],
+            ..
         } = *dispatch;
-        let entries: Vec<_> = buffers
-            .iter()
-            .map(|(binding, buffer)| BindGroupEntry {
-                binding: *binding,
-                resource: buffer.as_entire_binding(),
-            })
+        let bound = (0..).zip([dispatch.buffers, dispatch.own]);
+        let bound = bound.filter(|(_, buffers)| !buffers.is_empty());
+        let groups: Vec<_> = bound
+            .map(|(group, buffers)| (group, self.bind(kernel, group, buffers)))
             .collect();
-        let group = self.device.create_bind_group(&BindGroupDescriptor {
-            label: Some(&kernel.entry),
-            layout: &kernel.pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
         let timestamp_writes = queries.map(|(query_set, first)| ComputePassTimestampWrites {
             query_set,
             beginning_of_pass_write_index: Some(first),
@@ -137,7 +132,24 @@ impl Gpu {
             timestamp_writes,
         });
         pass.set_pipeline(&kernel.pipeline);
-        pass.set_bind_group(0, &group, &[]);
+        for (group, buffers) in &groups {
+            pass.set_bind_group(*group, buffers, &[]);
+        }
         pass.dispatch_workgroups(x, y, z);
+    }
+
+    fn bind(&self, kernel: &Kernel, group: u32, buffers: &[(u32, &Buffer)]) -> BindGroup {
+        let entries: Vec<_> = buffers
+            .iter()
+            .map(|(binding, buffer)| BindGroupEntry {
+                binding: *binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        self.device.create_bind_group(&BindGroupDescriptor {
+            label: Some(&kernel.entry),
+            layout: &kernel.pipeline.get_bind_group_layout(group),
+            entries: &entries,
+        })
     }
 }

@@ -13,8 +13,18 @@
 //! # assert!(shader.contains("fn slc_touches"));
 //! ```
 //!
-//! All names begin with `slc_`, `Slc` or `SLC_`. There are no directives, no bindings and no entry points, so the text
-//! works in wgpu, in Bevy, and wherever else WGSL is read.
+//! All names begin with `slc_`, `Slc` or `SLC_`. There are no directives, and outside of the kernels no bindings and no
+//! entry points, so the text works in wgpu, in Bevy, and wherever else WGSL is read.
+//!
+//! # Kernels
+//!
+//! A frame is two passes: [`BOUNDS_KERNEL`], then [`TILE_KERNEL`], which parts a tile's depths, lists its lights in shared
+//! memory and shades its pixels. Where shading is a pass of its own, such as one over transparent surfaces too, the second is
+//! three: [`DEPTHS_KERNEL`], [`LISTS_KERNEL`] and [`SHADE_KERNEL`] or a shader of the caller's. The text of [`KERNEL`] says
+//! which functions the caller defines. With the feature `bytemuck`, `GpuFrame` has the numbers of a frame, the sizes of its
+//! buffers and the numbers of workgroups, and `GpuBuffer` the bindings.
+//!
+//! Any number of lights may touch a tile: no list overflows, or else its pixels are shaded by all lights.
 //!
 //! # No light is lost
 //!
@@ -45,6 +55,34 @@ pub const PROJECT: &str = include_str!("../../shaders/project.wgsl");
 pub const TOUCH: &str = include_str!("../../shaders/touch.wgsl");
 /// Interleaved sampling. Needs no other text.
 pub const VIEW: &str = include_str!("../../shaders/view.wgsl");
+
+/// What the kernels of a frame share: the record of a frame, ξ of its lights, and depths. Needs the texts above but
+/// [`TIGHT`] and [`TOUCH`].
+pub const FRAME: &str = include_str!("../../shaders/frame.wgsl");
+
+/// The texts above but [`TIGHT`], joined.
+pub const FUNCTIONS: &str = concat!(
+    include_str!("../../shaders/num.wgsl"),
+    include_str!("../../shaders/lobe.wgsl"),
+    include_str!("../../shaders/light.wgsl"),
+    include_str!("../../shaders/bound.wgsl"),
+    include_str!("../../shaders/project.wgsl"),
+    include_str!("../../shaders/touch.wgsl"),
+    include_str!("../../shaders/view.wgsl"),
+    include_str!("../../shaders/frame.wgsl"),
+);
+/// What the kernels share: their bindings, and the depth intervals of a workgroup. Needs [`FUNCTIONS`].
+pub const KERNEL: &str = include_str!("../../shaders/kernel.wgsl");
+/// `slc_bound_lights`: draws ξ of each light, and bounds its range. Needs [`KERNEL`].
+pub const BOUNDS_KERNEL: &str = include_str!("../../shaders/bounds_kernel.wgsl");
+/// `slc_cull_and_shade`: depths, lists and shading of a tile in one pass. Needs [`KERNEL`].
+pub const TILE_KERNEL: &str = include_str!("../../shaders/tile_kernel.wgsl");
+/// `slc_part_depths`: the depth intervals of tiles. Needs [`KERNEL`].
+pub const DEPTHS_KERNEL: &str = include_str!("../../shaders/depths_kernel.wgsl");
+/// `slc_list_lights`: lists of lights for all depth intervals, as `LightLists` holds them. Needs [`KERNEL`].
+pub const LISTS_KERNEL: &str = include_str!("../../shaders/lists_kernel.wgsl");
+/// `slc_shade`: shades by such lists. Needs [`KERNEL`].
+pub const SHADE_KERNEL: &str = include_str!("../../shaders/shade_kernel.wgsl");
 
 /// The table of the tight bound, 42 kB: each knot is two `vec4f`.
 pub static TABLE: &[[f32; 8]] = &KNOTS;

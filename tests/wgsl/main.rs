@@ -3,6 +3,7 @@
 #![cfg(all(feature = "wgsl", feature = "bytemuck"))]
 
 mod arithmetic;
+mod kernels;
 mod lost;
 mod machine;
 mod operations;

@@ -127,14 +127,17 @@ impl Subregion {
 
 impl Light {
     pub fn stretch(&self, camera: &Camera) -> ProjectedEllipsoid {
-        // World space looks along −z.
+        self.ellipsoid().project(camera).expect("not empty")
+    }
+
+    /// In world space, which looks along −z.
+    pub fn ellipsoid(&self) -> Ellipsoid {
         let world = |[x, y, z]: [f64; 3]| Vec3::new(x as f32, y as f32, -z as f32);
         let u = world(self.axis).normalize();
         let v = u.any_orthonormal_vector();
         let rotation = Mat3::from_cols(u, v, u.cross(v));
         let semi_axes = Vec3::new(self.long as f32, self.short as f32, self.short as f32);
-        let ellipsoid = Ellipsoid::new(world(self.center), rotation, semi_axes).expect("in range");
-        ellipsoid.project(camera).expect("not empty")
+        Ellipsoid::new(world(self.center), rotation, semi_axes).expect("in range")
     }
 }
 
