@@ -140,28 +140,28 @@ impl Cap {
     /// unless all axes are the same.
     #[must_use]
     pub fn union(caps: impl Iterator<Item = Self> + Clone) -> Option<Self> {
-        let first = caps.clone().next()?.axis;
-        let mut sum = Vec3::ZERO;
-        let mut is_one_axis = true;
-        for cap in caps.clone() {
-            sum += *cap.axis;
-            is_one_axis &= cap.axis == first;
+        let mut sum = CapSum::of(&caps.clone().next()?);
+        for cap in caps.clone().skip(1) {
+            sum.add(&cap);
         }
-        let (axis, rounding) = if is_one_axis {
-            (first, 0.0)
+        let mut union = sum.mean();
+        for cap in caps {
+            union.widen(&cap);
+        }
+        Some(union)
+    }
+
+    /// Widens the cap until it holds `other`.
+    #[inline(always)]
+    pub(super) fn widen(&mut self, other: &Self) {
+        let apart = Vector3::from(*other.axis - *self.axis).length();
+        let rounding = if apart > 0.0 {
+            UNION_ROUNDINGS * UNIT_ROUNDOFF
         } else {
-            // Any axis holds all of them.
-            let mean = Direction::new(sum).unwrap_or(first);
-            (mean, UNION_ROUNDINGS * UNIT_ROUNDOFF)
+            0.0
         };
-        let chord = caps.fold(0.0, |chord: f32, cap| {
-            let apart = Vector3::from(*cap.axis - *axis).length();
-            chord.max(apart + cap.chord)
-        });
-        Some(Self {
-            axis,
-            chord: (chord + rounding).min(2.0),
-        })
+        let chord = (apart + other.chord + rounding).min(2.0);
+        self.chord = self.chord.max(chord);
     }
 
     /// The cap in as many lanes as `like` has, not enlarged.
@@ -179,6 +179,43 @@ impl Cap {
             axis: self.axis.into(),
             chord: self.chord + CHORD_ROUNDINGS * UNIT_ROUNDOFF,
         }
+    }
+}
+
+/// The sum of the axes of caps, around which their union is.
+#[derive(Clone, Copy, Debug)]
+pub struct CapSum {
+    first: Direction,
+    sum: Vec3,
+    is_one_axis: bool,
+}
+
+impl CapSum {
+    /// That of one cap.
+    #[inline(always)]
+    pub fn of(cap: &Cap) -> Self {
+        Self {
+            first: cap.axis,
+            sum: *cap.axis,
+            is_one_axis: true,
+        }
+    }
+
+    #[inline(always)]
+    pub fn add(&mut self, cap: &Cap) {
+        self.sum += *cap.axis;
+        self.is_one_axis &= cap.axis == self.first;
+    }
+
+    /// The mean axis alone, before the cap is [widened](Cap::widen).
+    pub fn mean(&self) -> Cap {
+        let axis = if self.is_one_axis {
+            self.first
+        } else {
+            // Any axis holds all of them.
+            Direction::new(self.sum).unwrap_or(self.first)
+        };
+        Cap { axis, chord: 0.0 }
     }
 }
 

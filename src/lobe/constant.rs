@@ -72,9 +72,17 @@ impl ReceiverLobe for ConstantLobe {
 }
 
 impl LobeFamily for ConstantLobe {
-    fn union(mut families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
-        families.next()
+    type Sum = ();
+
+    fn to_sum(&self) {}
+
+    fn add_to(&self, (): &mut ()) {}
+
+    fn mean((): &()) -> Self {
+        Self
     }
+
+    fn widen(&mut self, _: &Self) {}
 
     #[inline(always)]
     fn majorant_in_lanes<N: Single>(&self, cap: &Caps<N>) -> Majorant<N> {

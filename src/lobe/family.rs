@@ -48,11 +48,41 @@ pub trait ReceiverLobe: Lobe + Clone {
 
 /// What stands for many lobes, such as those of the receivers in a tile.
 pub trait LobeFamily: Copy + Debug + PartialEq + Send + Sync + 'static {
+    /// Sums of axes, and ranges of the other numbers.
+    #[doc(hidden)]
+    type Sum: Copy;
+
     /// The family of all members of `families`. `None` if there are none.
     ///
     /// The iterator is walked twice: once for mean axes, once for the chords around them.
     #[must_use]
-    fn union(families: impl Iterator<Item = Self> + Clone) -> Option<Self>;
+    fn union(families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
+        let mut sum = families.clone().next()?.to_sum();
+        for family in families.clone().skip(1) {
+            family.add_to(&mut sum);
+        }
+        let mut union = Self::mean(&sum);
+        for family in families {
+            union.widen(&family);
+        }
+        Some(union)
+    }
+
+    /// The sum of this family alone.
+    #[doc(hidden)]
+    fn to_sum(&self) -> Self::Sum;
+
+    /// Adds this family to a sum.
+    #[doc(hidden)]
+    fn add_to(&self, sum: &mut Self::Sum);
+
+    /// The mean axes, without chords yet, and the ranges of the other numbers.
+    #[doc(hidden)]
+    fn mean(sum: &Self::Sum) -> Self;
+
+    /// Widens the chords of a mean until it holds `member`, which is in the sum.
+    #[doc(hidden)]
+    fn widen(&mut self, member: &Self);
 
     /// Computes the majorant of all members within the cap in each lane.
     #[doc(hidden)]
@@ -73,9 +103,17 @@ pub trait LobeFamily: Copy + Debug + PartialEq + Send + Sync + 'static {
 pub struct Blind;
 
 impl LobeFamily for Blind {
-    fn union(mut families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
-        families.next()
+    type Sum = ();
+
+    fn to_sum(&self) {}
+
+    fn add_to(&self, (): &mut ()) {}
+
+    fn mean((): &()) -> Self {
+        Self
     }
+
+    fn widen(&mut self, _: &Self) {}
 
     #[inline(always)]
     fn majorant_in_lanes<N: Single>(&self, cap: &Caps<N>) -> Majorant<N> {

@@ -1,3 +1,4 @@
+use super::cap::CapSum;
 use super::spherical_gaussian::SphericalGaussians;
 use super::{Cap, Caps, LobeFamily, Majorant, ReceiverLobe, SphericalGaussian};
 use crate::num::{Real, Single, Vector3, exponential, round_up};
@@ -40,21 +41,46 @@ impl ReceiverLobe for SphericalGaussian {
 }
 
 impl LobeFamily for SphericalGaussianFamily {
-    fn union(mut families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
-        let lit = families.clone().filter(|family| family.amplitude > 0.0);
-        let Some(axes) = Cap::union(lit.clone().map(|family| family.axes)) else {
-            return families.next();
+    /// All numbers but the axes, and those.
+    type Sum = (Self, CapSum);
+
+    #[inline(always)]
+    fn to_sum(&self) -> Self::Sum {
+        (*self, CapSum::of(&self.axes))
+    }
+
+    #[inline(always)]
+    fn add_to(&self, sum: &mut Self::Sum) {
+        let (family, axes) = sum;
+        if self.amplitude <= 0.0 {
+            return;
+        }
+        if family.amplitude <= 0.0 {
+            *sum = self.to_sum();
+            return;
+        }
+        let ([least, most], [own_least, own_most]) = (family.sharpness, self.sharpness);
+        *family = Self {
+            sharpness: [least.min(own_least), most.max(own_most)],
+            amplitude: family.amplitude.max(self.amplitude),
+            share: family.share.max(self.share),
+            ..*family
         };
-        let rest = lit.reduce(|a, b| Self {
-            sharpness: [
-                a.sharpness[0].min(b.sharpness[0]),
-                a.sharpness[1].max(b.sharpness[1]),
-            ],
-            amplitude: a.amplitude.max(b.amplitude),
-            share: a.share.max(b.share),
-            ..a
-        })?;
-        Some(Self { axes, ..rest })
+        axes.add(&self.axes);
+    }
+
+    fn mean((family, axes): &Self::Sum) -> Self {
+        Self {
+            axes: axes.mean(),
+            ..*family
+        }
+    }
+
+    #[inline(always)]
+    fn widen(&mut self, member: &Self) {
+        if member.amplitude > 0.0 {
+            self.axes.widen(&member.axes);
+        }
     }
 
     #[inline(always)]

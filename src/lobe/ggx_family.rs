@@ -1,6 +1,7 @@
 use core::fmt::{self, Debug, Formatter};
 use core::marker::PhantomData;
 
+use super::cap::CapSum;
 use super::ggx::masking_root;
 use super::ggx_majorant::{GgxMembers, worst_alpha_squared};
 use super::{
@@ -62,6 +63,26 @@ impl Numbers {
     }
 }
 
+/// The sum of families.
+#[derive(Clone, Copy, Debug)]
+pub struct NumbersSum {
+    normals: CapSum,
+    incoming: CapSum,
+    /// All but the caps.
+    numbers: Numbers,
+}
+
+impl NumbersSum {
+    #[inline(always)]
+    fn of(numbers: &Numbers) -> Self {
+        Self {
+            normals: CapSum::of(&numbers.normals),
+            incoming: CapSum::of(&numbers.incoming),
+            numbers: *numbers,
+        }
+    }
+}
+
 impl<F: Fresnel, G: MaskingShadowing> ReceiverLobe for GgxLobe<F, G> {
     type Family = GgxFamily<G>;
 
@@ -105,21 +126,42 @@ impl<G> GgxFamily<G> {
 }
 
 impl<G: MaskingShadowing> LobeFamily for GgxFamily<G> {
-    fn union(mut families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
-        let lit = families
-            .clone()
-            .map(|family| family.numbers)
-            .filter(|numbers| !numbers.is_empty());
-        let Some(normals) = Cap::union(lit.clone().map(|numbers| numbers.normals)) else {
-            return families.next();
-        };
-        let incoming = Cap::union(lit.clone().map(|numbers| numbers.incoming))?;
-        let rest = lit.reduce(Numbers::union_without_caps)?;
-        Some(Self::new(Numbers {
-            normals,
-            incoming,
-            ..rest
-        }))
+    type Sum = NumbersSum;
+
+    #[inline(always)]
+    fn to_sum(&self) -> NumbersSum {
+        NumbersSum::of(&self.numbers)
+    }
+
+    #[inline(always)]
+    fn add_to(&self, sum: &mut NumbersSum) {
+        let numbers = &self.numbers;
+        if numbers.is_empty() {
+            return;
+        }
+        if sum.numbers.is_empty() {
+            *sum = NumbersSum::of(numbers);
+            return;
+        }
+        sum.normals.add(&numbers.normals);
+        sum.incoming.add(&numbers.incoming);
+        sum.numbers = sum.numbers.union_without_caps(*numbers);
+    }
+
+    fn mean(sum: &NumbersSum) -> Self {
+        Self::new(Numbers {
+            normals: sum.normals.mean(),
+            incoming: sum.incoming.mean(),
+            ..sum.numbers
+        })
+    }
+
+    #[inline(always)]
+    fn widen(&mut self, member: &Self) {
+        if !member.numbers.is_empty() {
+            self.numbers.normals.widen(&member.numbers.normals);
+            self.numbers.incoming.widen(&member.numbers.incoming);
+        }
     }
 
     #[inline(always)]

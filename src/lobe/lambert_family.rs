@@ -1,3 +1,4 @@
+use super::cap::CapSum;
 use super::lambert::lambert_majorant;
 use super::{Cap, Caps, LambertLobe, LobeFamily, Majorant, ReceiverLobe};
 use crate::num::Single;
@@ -26,13 +27,40 @@ impl ReceiverLobe for LambertLobe {
 }
 
 impl LobeFamily for LambertFamily {
-    fn union(mut families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
-        let lit = families.clone().filter(|family| family.albedo > 0.0);
-        let Some(normals) = Cap::union(lit.clone().map(|family| family.normals)) else {
-            return families.next();
-        };
-        let albedo = lit.fold(0.0, |most: f32, family| most.max(family.albedo));
-        Some(Self { albedo, normals })
+    /// The greatest albedo, and the normals.
+    type Sum = (f32, CapSum);
+
+    #[inline(always)]
+    fn to_sum(&self) -> Self::Sum {
+        (self.albedo, CapSum::of(&self.normals))
+    }
+
+    #[inline(always)]
+    fn add_to(&self, sum: &mut Self::Sum) {
+        let (albedo, normals) = sum;
+        if self.albedo <= 0.0 {
+            return;
+        }
+        if *albedo <= 0.0 {
+            *sum = self.to_sum();
+            return;
+        }
+        *albedo = self.albedo.max(*albedo);
+        normals.add(&self.normals);
+    }
+
+    fn mean((albedo, normals): &Self::Sum) -> Self {
+        Self {
+            albedo: *albedo,
+            normals: normals.mean(),
+        }
+    }
+
+    #[inline(always)]
+    fn widen(&mut self, member: &Self) {
+        if member.albedo > 0.0 {
+            self.normals.widen(&member.normals);
+        }
     }
 
     #[inline(always)]

@@ -1,5 +1,6 @@
 use glam::Vec3;
 
+use super::cap::CapSum;
 use super::ltc_lobes::LtcMembers;
 use super::{Cap, Caps, LobeFamily, LtcLobe, Majorant, ReceiverLobe};
 use crate::num::{Single, Vector3, round_down, round_up, sqrt_f64};
@@ -51,6 +52,21 @@ impl LtcFamily {
     }
 }
 
+/// The sum of families.
+#[derive(Clone, Copy, Debug)]
+pub struct LtcSum {
+    normals: CapSum,
+    rows: [Vec3; 3],
+    count: f32,
+    /// All but normals, rows and deviations.
+    family: LtcFamily,
+}
+
+/// The greater of both, one by one.
+fn most([a, b]: [f32; 2], [c, d]: [f32; 2]) -> [f32; 2] {
+    [a.max(c), b.max(d)]
+}
+
 impl ReceiverLobe for LtcLobe {
     type Family = LtcFamily;
 
@@ -75,35 +91,52 @@ impl ReceiverLobe for LtcLobe {
 }
 
 impl LobeFamily for LtcFamily {
-    fn union(mut families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
-        let lit = families.clone().filter(|family| !family.is_empty());
-        let Some(normals) = Cap::union(lit.clone().map(|family| family.normals)) else {
-            return families.next();
+    type Sum = LtcSum;
+
+    fn to_sum(&self) -> LtcSum {
+        LtcSum {
+            normals: CapSum::of(&self.normals),
+            rows: self.rows,
+            count: 1.0,
+            family: *self,
+        }
+    }
+
+    fn add_to(&self, sum: &mut LtcSum) {
+        if self.is_empty() {
+            return;
+        }
+        if sum.family.is_empty() {
+            *sum = self.to_sum();
+            return;
+        }
+        sum.normals.add(&self.normals);
+        for (row, own) in sum.rows.iter_mut().zip(self.rows) {
+            *row += own;
+        }
+        sum.count += 1.0;
+        sum.family = Self {
+            amplitude: sum.family.amplitude.max(self.amplitude),
+            norms: most(sum.family.norms, self.norms),
+            least_image: sum.family.least_image.min(self.least_image),
+            ..sum.family
         };
-        let number = lit.clone().count() as f32;
-        let rows = lit.clone().fold([Vec3::ZERO; 3], |mut rows, family| {
-            for (row, own) in rows.iter_mut().zip(family.rows) {
-                *row += own / number;
-            }
-            rows
-        });
-        let most = |[a, b]: [f32; 2], [c, d]: [f32; 2]| [a.max(c), b.max(d)];
-        let around = lit.map(|family| Self {
-            deviations: family.deviations_from(rows),
-            ..family
-        });
-        let rest = around.reduce(|a, b| Self {
-            amplitude: a.amplitude.max(b.amplitude),
-            deviations: most(a.deviations, b.deviations),
-            norms: most(a.norms, b.norms),
-            least_image: a.least_image.min(b.least_image),
-            ..a
-        })?;
-        Some(Self {
-            normals,
-            rows,
-            ..rest
-        })
+    }
+
+    fn mean(sum: &LtcSum) -> Self {
+        Self {
+            normals: sum.normals.mean(),
+            rows: sum.rows.map(|row| row / sum.count),
+            deviations: [0.0; 2],
+            ..sum.family
+        }
+    }
+
+    fn widen(&mut self, member: &Self) {
+        if !member.is_empty() {
+            self.normals.widen(&member.normals);
+            self.deviations = most(self.deviations, member.deviations_from(self.rows));
+        }
     }
 
     #[inline(always)]

@@ -1,3 +1,4 @@
+use super::cap::CapSum;
 use super::phong::PhongLobes;
 use super::{Cap, Caps, Lobe, LobeFamily, Majorant, PhongLobe, ReceiverLobe};
 use crate::num::{Real, Single, Vector3, ln_1p_f64};
@@ -36,25 +37,48 @@ impl ReceiverLobe for PhongLobe {
 }
 
 impl LobeFamily for PhongFamily {
-    fn union(mut families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
-        let lit = families.clone().filter(|family| family.albedo > 0.0);
-        let Some(normals) = Cap::union(lit.clone().map(|family| family.normals)) else {
-            return families.next();
+    /// All numbers but the directions, and normals and axes.
+    type Sum = (Self, [CapSum; 2]);
+
+    #[inline(always)]
+    fn to_sum(&self) -> Self::Sum {
+        (*self, [CapSum::of(&self.normals), CapSum::of(&self.axes)])
+    }
+
+    #[inline(always)]
+    fn add_to(&self, sum: &mut Self::Sum) {
+        let (family, [normals, axes]) = sum;
+        if self.albedo <= 0.0 {
+            return;
+        }
+        if family.albedo <= 0.0 {
+            *sum = self.to_sum();
+            return;
+        }
+        let ([least, most], [own_least, own_most]) = (family.exponents, self.exponents);
+        *family = Self {
+            albedo: family.albedo.max(self.albedo),
+            exponents: [least.min(own_least), most.max(own_most)],
+            ..*family
         };
-        let axes = Cap::union(lit.clone().map(|family| family.axes))?;
-        let rest = lit.reduce(|a, b| Self {
-            albedo: a.albedo.max(b.albedo),
-            exponents: [
-                a.exponents[0].min(b.exponents[0]),
-                a.exponents[1].max(b.exponents[1]),
-            ],
-            ..a
-        })?;
-        Some(Self {
-            normals,
-            axes,
-            ..rest
-        })
+        normals.add(&self.normals);
+        axes.add(&self.axes);
+    }
+
+    fn mean((family, [normals, axes]): &Self::Sum) -> Self {
+        Self {
+            normals: normals.mean(),
+            axes: axes.mean(),
+            ..*family
+        }
+    }
+
+    #[inline(always)]
+    fn widen(&mut self, member: &Self) {
+        if member.albedo > 0.0 {
+            self.normals.widen(&member.normals);
+            self.axes.widen(&member.axes);
+        }
     }
 
     #[inline(always)]

@@ -309,19 +309,37 @@ impl<A: ReceiverLobe, B: ReceiverLobe> ReceiverLobe for LobeSum<A, B> {
 }
 
 impl<A: LobeFamily, B: LobeFamily> LobeFamily for SumFamily<A, B> {
-    fn union(families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
-        let any = families.clone().next()?;
-        let weighted = |i: usize| families.clone().filter(move |sum| sum.weights[i] > 0.0);
-        let greatest = |i: usize| weighted(i).fold(0.0, |most: f32, sum| most.max(sum.weights[i]));
-        let first = A::union(weighted(0).map(|sum| sum.families.0));
-        let second = B::union(weighted(1).map(|sum| sum.families.1));
-        Some(Self {
-            families: (
-                first.unwrap_or(any.families.0),
-                second.unwrap_or(any.families.1),
-            ),
-            weights: [greatest(0), greatest(1)],
-        })
+    /// The sums of both, and the greatest weights.
+    type Sum = (A::Sum, B::Sum, [f32; 2]);
+
+    #[inline(always)]
+    fn to_sum(&self) -> Self::Sum {
+        let (first, second) = &self.families;
+        (first.to_sum(), second.to_sum(), self.weights)
+    }
+
+    #[inline(always)]
+    fn add_to(&self, (of_first, of_second, weights): &mut Self::Sum) {
+        let (first, second) = &self.families;
+        add_weighted((first, self.weights[0]), of_first, &mut weights[0]);
+        add_weighted((second, self.weights[1]), of_second, &mut weights[1]);
+    }
+
+    fn mean((first, second, weights): &Self::Sum) -> Self {
+        Self {
+            families: (A::mean(first), B::mean(second)),
+            weights: *weights,
+        }
+    }
+
+    #[inline(always)]
+    fn widen(&mut self, member: &Self) {
+        if member.weights[0] > 0.0 {
+            self.families.0.widen(&member.families.0);
+        }
+        if member.weights[1] > 0.0 {
+            self.families.1.widen(&member.families.1);
+        }
     }
 
     #[inline(always)]
@@ -333,4 +351,18 @@ impl<A: LobeFamily, B: LobeFamily> LobeFamily for SumFamily<A, B> {
             [cap.splat(self.weights[0]), cap.splat(self.weights[1])],
         )
     }
+}
+
+/// Adds a family with its weight to a sum. One of weight zero is no member.
+#[inline(always)]
+fn add_weighted<F: LobeFamily>((family, weight): (&F, f32), sum: &mut F::Sum, greatest: &mut f32) {
+    if weight <= 0.0 {
+        return;
+    }
+    if *greatest > 0.0 {
+        family.add_to(sum);
+    } else {
+        *sum = family.to_sum();
+    }
+    *greatest = greatest.max(weight);
 }

@@ -41,19 +41,25 @@ impl<F: LobeFamily> ReceiverCluster<F> {
     #[must_use]
     pub fn of(receivers: impl Iterator<Item = (Vec3, F)> + Clone) -> Option<Self> {
         let receivers = receivers.filter(|(position, _)| position.is_finite());
-        let family = F::union(receivers.clone().map(|(_, family)| family))?;
-        let (mut min, mut max, mut len) = (Vec3::MAX, Vec3::MIN, 0_u32);
-        for (position, _) in receivers.clone() {
+        let (first, family) = receivers.clone().next()?;
+        let (mut min, mut max, mut len) = (first, first, 1_u32);
+        let mut sum = family.to_sum();
+        for (position, family) in receivers.clone().skip(1) {
             (min, max) = (min.min(position), max.max(position));
+            family.add_to(&mut sum);
             len = len.saturating_add(1);
         }
         let center = min.midpoint(max);
-        let squared = receivers.map(|(position, _)| center.distance_squared(position));
-        // Takes the infinity where a square overflows.
-        let radius = sqrt(squared.fold(0.0, f32::max));
+        let mut family = F::mean(&sum);
+        let mut squared = 0.0_f32;
+        for (position, member) in receivers {
+            squared = squared.max(center.distance_squared(position));
+            family.widen(&member);
+        }
         Some(Self {
             center,
-            radius: enlarged(radius, center),
+            // Infinite where a square overflows.
+            radius: enlarged(sqrt(squared), center),
             family,
             delta_scale: 1.0,
             len,
