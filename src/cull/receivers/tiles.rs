@@ -150,9 +150,9 @@ impl<F: LobeFamily> TileReceivers<F> {
     /// `receivers` gives those of a part = \[column, row\] of [`parts_grid`](Self::parts_grid) and an interval;
     /// `None` is an interval without receivers, which needs no light.
     pub fn fill(&mut self, mut receivers: impl FnMut([u32; 2], u32) -> Option<ReceiverCluster<F>>) {
-        let (place_of, slots) = self.slots();
-        for (slot, cluster) in slots.iter_mut().enumerate() {
-            let (part, interval) = place_of(slot);
+        let (intervals, Level { size, clusters, .. }) = (self.intervals, &mut self.levels[0]);
+        for (slot, cluster) in clusters.iter_mut().enumerate() {
+            let (part, interval) = place_of(slot, size[0], intervals);
             *cluster = receivers(part, interval);
         }
         self.merge();
@@ -164,33 +164,13 @@ impl<F: LobeFamily> TileReceivers<F> {
         &mut self,
         receivers: impl Fn([u32; 2], u32) -> Option<ReceiverCluster<F>> + Sync,
     ) {
-        let (place_of, slots) = self.slots();
-        slots
-            .par_iter_mut()
-            .enumerate()
-            .for_each(|(slot, cluster)| {
-                let (part, interval) = place_of(slot);
-                *cluster = receivers(part, interval);
-            });
+        let (intervals, Level { size, clusters, .. }) = (self.intervals, &mut self.levels[0]);
+        let clusters = clusters.par_iter_mut().enumerate();
+        clusters.for_each(|(slot, cluster)| {
+            let (part, interval) = place_of(slot, size[0], intervals);
+            *cluster = receivers(part, interval);
+        });
         self.merge();
-    }
-
-    /// The clusters to fill, and the part and interval of each by its index.
-    fn slots(
-        &mut self,
-    ) -> (
-        impl Fn(usize) -> ([u32; 2], u32) + use<F>,
-        &mut [Option<ReceiverCluster<F>>],
-    ) {
-        let intervals = self.intervals;
-        let Level { size, clusters, .. } = &mut self.levels[0];
-        let columns = size[0];
-        let place_of = move |slot: usize| {
-            let part = slot / intervals;
-            let part = [part % columns, part / columns].map(|n| n as u32);
-            (part, (slot % intervals) as u32)
-        };
-        (place_of, clusters)
     }
 
     /// Merges the clusters of each level to those of the next.
@@ -325,6 +305,13 @@ impl<F: LobeFamily> TileReceivers<F> {
         let nodes = itself.into_iter().chain(parts.into_iter().flatten());
         nodes.filter_map(|node| self.cluster(node))
     }
+}
+
+/// The part of a tile, and the interval, whose receivers are in a slot.
+fn place_of(slot: usize, columns: usize, intervals: usize) -> ([u32; 2], u32) {
+    let (part, interval) = (slot / intervals, slot % intervals);
+    let part = [part % columns, part / columns].map(|n| n as u32);
+    (part, interval as u32)
 }
 
 impl Division {
