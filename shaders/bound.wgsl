@@ -20,7 +20,7 @@ const SLC_SEMI_AXIS_ULPS: f32 = 128.0;
 /// Pays for the rounding of the cosine of the largest half angle.
 const SLC_SMALLEST_COSINE_ULPS: f32 = 64.0;
 /// Pays for the rounding of a value of F.
-const SLC_REFLECTANCE_ULPS: f32 = 128.0;
+const SLC_REFLECTANCE_ULPS: f32 = 256.0;
 /// Lower clamp of Fresnel maxima.
 const SLC_LEAST_REFLECTED: f32 = 1.0e-30;
 /// Below this sine of incidence the plane of incidence is any plane through the normal.
@@ -103,6 +103,20 @@ fn slc_max_fresnel(grazing: f32, steepest: f32) -> f32 {
 fn slc_max_schlick(light: SlcLight) -> f32 {
     let f0 = light.fresnel.x;
     return slc_max_fresnel(slc_schlick(f0, slc_smallest_half_angle_cosine(light)), f0);
+}
+
+/// F_max of a light with the Fresnel factor of a dielectric.
+fn slc_max_dielectric(light: SlcLight) -> f32 {
+    let index = light.fresnel.x;
+    let grazing = slc_dielectric(index, slc_smallest_half_angle_cosine(light));
+    return slc_max_fresnel(grazing, slc_dielectric(index, 1.0));
+}
+
+/// F_max of a light with the Fresnel factor of a conductor.
+fn slc_max_conductor(light: SlcLight) -> f32 {
+    let index = light.fresnel;
+    let grazing = slc_conductor(index, slc_smallest_half_angle_cosine(light));
+    return slc_max_fresnel(grazing, slc_conductor(index, 1.0));
 }
 
 /// The spheroid with r² = F_max G1(μ)/(4πμ) around a GGX lobe, for `max_fresnel` = F_max

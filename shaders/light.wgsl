@@ -86,13 +86,13 @@ fn slc_stirred(words: vec3u) -> vec2u {
 const SLC_SCALE_ULPS: f32 = 24.0;
 
 /// The scale √(Φ/(δξ)) of a light's unit bound, rounded up: `Roulette::scale`. Zero for Φ = 0, and else from
-/// 10⁻¹⁸ to 10¹⁸.
+/// 10⁻¹⁸ to 10³⁰.
 fn slc_scale(flux: f32, delta: f32, xi: f32) -> f32 {
     if flux <= 0.0 {
         return 0.0;
     }
     let radius = sqrt(flux) / (sqrt(xi) * sqrt(delta));
-    return clamp(slc_round_up(radius, SLC_SCALE_ULPS), 1.0e-18, 1.0e18);
+    return clamp(slc_round_up(radius, SLC_SCALE_ULPS), 1.0e-18, 1.0e30);
 }
 
 /// Whether a light of this intensity is accepted: p = min(I/(δl²), 1) ≥ ξ. `Roulette::accepts`.

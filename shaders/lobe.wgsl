@@ -85,3 +85,68 @@ fn slc_half_angle_cosine(light: SlcLight, outgoing: vec3f) -> f32 {
 fn slc_schlick(f0: f32, half_angle_cosine: f32) -> f32 {
     return f0 + (1.0 - f0) * slc_fifth_power(1.0 - half_angle_cosine);
 }
+
+/// A GGX lobe with the Fresnel factor of a dielectric: `GgxLobe<Dielectric>` of the crate.
+fn slc_ggx_dielectric(light: SlcLight, outgoing: vec3f) -> f32 {
+    return slc_dielectric(light.fresnel.x, slc_half_angle_cosine(light, outgoing)) * slc_ggx(light, outgoing);
+}
+
+/// A GGX lobe with the Fresnel factor of a conductor: `GgxLobe<Conductor>` of the crate.
+fn slc_ggx_conductor(light: SlcLight, outgoing: vec3f) -> f32 {
+    return slc_conductor(light.fresnel, slc_half_angle_cosine(light, outgoing)) * slc_ggx(light, outgoing);
+}
+
+/// F of a dielectric with the relative refractive index η = `index`, for unpolarised light.
+///
+/// With w = √(η² − s²), where c and s are cosine and sine of the half angle, the amplitudes are (1 − η²)/(c + w)²,
+/// and that times (cw − s²)/(cw + s²): nothing cancels but where it does not count.
+fn slc_dielectric(index: f32, half_angle_cosine: f32) -> f32 {
+    let c = half_angle_cosine;
+    let w_squared = slc_index_squared_less_sine_squared(index, c);
+    if w_squared <= 0.0 {
+        return 1.0;
+    }
+    let w = sqrt(w_squared);
+    let s_squared = (1.0 - c) * (1.0 + c);
+    let amplitude = ((1.0 - index) / (c + w)) * ((1.0 + index) / (c + w));
+    let polarisation = (c * w - s_squared) / (c * w + s_squared);
+    return min(0.5 * amplitude * amplitude * (1.0 + polarisation * polarisation), 1.0);
+}
+
+/// F of a conductor with the refractive index η and the extinction coefficient κ, `index` = (η, κ), for unpolarised
+/// light.
+///
+/// As that of a dielectric, with w = a + ib = √((η + iκ)² − s²).
+fn slc_conductor(index: vec2f, half_angle_cosine: f32) -> f32 {
+    let eta = index.x;
+    let kappa = index.y;
+    let c = half_angle_cosine;
+    let s_squared = (1.0 - c) * (1.0 + c);
+    // w² = real + 2i ab. The larger of a and b is a root, the other follows, so that neither cancels.
+    let real = slc_index_squared_less_sine_squared(eta, c) - kappa * kappa;
+    let product = eta * kappa;
+    let modulus = sqrt(real * real + 4.0 * (product * product));
+    // Not less than the root of the product, whose square may vanish.
+    let larger = max(sqrt(0.5 * (modulus + abs(real))), sqrt(product));
+    let smaller = product / max(larger, 1.0e-30);
+    let a = select(smaller, larger, real > 0.0);
+    let b = select(larger, smaller, real > 0.0);
+
+    let sum = (a + c) * (a + c) + b * b;
+    let less = (1.0 - eta) * (1.0 - eta) + kappa * kappa;
+    let more = (1.0 + eta) * (1.0 + eta) + kappa * kappa;
+    let perpendicular = (less / sum) * (more / sum);
+    let minus = c * a - s_squared;
+    let plus = c * a + s_squared;
+    let cb = c * b;
+    let polarisation = (minus * minus + cb * cb) / (plus * plus + cb * cb);
+    return min(0.5 * perpendicular * (1.0 + polarisation), 1.0);
+}
+
+/// η² − s². Its error is a few roundings of the smaller of s² and c², which matters at the critical angle.
+fn slc_index_squared_less_sine_squared(index: f32, c: f32) -> f32 {
+    if c * c > 0.5 {
+        return index * index - (1.0 - c) * (1.0 + c);
+    }
+    return c * c + (index - 1.0) * (index + 1.0);
+}

@@ -4,8 +4,8 @@ use bytemuck::{Pod, Zeroable};
 use fastrand::Rng;
 use gpu::{Gpu, Map};
 use stochastic_light_culling::{
-    Direction, Ggx, GgxLobe, GpuLight, Incidence, LambertLobe, NoFresnel, Schlick, Vpl, glam::Vec3,
-    wgsl,
+    Conductor, Dielectric, Direction, Ggx, GgxLobe, GpuLight, Incidence, LambertLobe, Lobe,
+    NoFresnel, Schlick, Vpl, glam::Vec3, wgsl,
 };
 use support::adversary::{Light, Reach};
 use support::reference::exact::{Exact, reflectance, value};
@@ -22,18 +22,24 @@ struct Case {
 
 const CASE: &str = "struct Case { light: SlcLight, outgoing: vec3f, kind: u32 }";
 
-/// A light with the lobe of `light`, and the function that evaluates it.
+fn record_of<L: Lobe>(light: &Light, lobe: L) -> GpuLight
+where
+    for<'a> GpuLight: From<&'a Vpl<L>>,
+{
+    GpuLight::from(&Vpl::new(light.position, light.flux, lobe).unwrap())
+}
+
+/// The record of a light, and the case of the function that evaluates its lobe.
 fn record(light: &Light) -> Option<(GpuLight, u32)> {
     let incidence = Incidence {
         normal: light.normal,
         incoming: light.incoming,
     };
-    let vpl = (light.position, light.flux);
     Some(match light.brdf {
-        Brdf::Lambert { albedo } => {
-            let lobe = LambertLobe::new(albedo, light.normal).unwrap();
-            (GpuLight::from(&Vpl::new(vpl.0, vpl.1, lobe).unwrap()), 0)
-        }
+        Brdf::Lambert { albedo } => (
+            record_of(light, LambertLobe::new(albedo, light.normal).unwrap()),
+            0,
+        ),
         Brdf::Ggx {
             roughness,
             fresnel,
@@ -41,15 +47,22 @@ fn record(light: &Light) -> Option<(GpuLight, u32)> {
         } => {
             let ggx = Ggx::new(roughness).unwrap();
             match fresnel {
-                Fresnel::None => {
-                    let lobe = GgxLobe::new(ggx, NoFresnel, incidence);
-                    (GpuLight::from(&Vpl::new(vpl.0, vpl.1, lobe).unwrap()), 1)
-                }
+                Fresnel::None => (record_of(light, GgxLobe::new(ggx, NoFresnel, incidence)), 1),
                 Fresnel::Schlick(f0) => {
-                    let lobe = GgxLobe::new(ggx, Schlick::new(f0).unwrap(), incidence);
-                    (GpuLight::from(&Vpl::new(vpl.0, vpl.1, lobe).unwrap()), 2)
+                    let schlick = Schlick::new(f0).unwrap();
+                    (record_of(light, GgxLobe::new(ggx, schlick, incidence)), 2)
                 }
-                _ => return None,
+                Fresnel::Dielectric(eta) => {
+                    let dielectric = Dielectric::new(eta).unwrap();
+                    (
+                        record_of(light, GgxLobe::new(ggx, dielectric, incidence)),
+                        3,
+                    )
+                }
+                Fresnel::Conductor(eta, kappa) => {
+                    let conductor = Conductor::new(eta, kappa).unwrap();
+                    (record_of(light, GgxLobe::new(ggx, conductor, incidence)), 4)
+                }
             }
         }
         _ => return None,
@@ -111,7 +124,9 @@ fn lobes_are_exact_to_eight_units_and_their_inputs() {
             switch input.kind {
                 case 0u: { return slc_lambert(input.light.fresnel.x, input.light.normal, input.outgoing); }
                 case 1u: { return slc_ggx(input.light, input.outgoing); }
-                default: { return slc_ggx_schlick(input.light, input.outgoing); }
+                case 2u: { return slc_ggx_schlick(input.light, input.outgoing); }
+                case 3u: { return slc_ggx_dielectric(input.light, input.outgoing); }
+                default: { return slc_ggx_conductor(input.light, input.outgoing); }
             }",
     };
     let mut rng = Rng::with_seed(3);

@@ -9,8 +9,8 @@ use naga::{Handle, Module, ScalarKind, Type, TypeInner};
 use rayon::prelude::*;
 use stochastic_light_culling::wgsl::{BOUND, LIGHT, LOBE, NUM, PROJECT, TABLE, TIGHT, TOUCH};
 use stochastic_light_culling::{
-    ConstantLobe, Ellipsoid, Ggx, GgxLobe, GpuCamera, GpuLight, Incidence, LambertLobe, NoFresnel,
-    Schlick, Vpl,
+    Conductor, ConstantLobe, Dielectric, Ellipsoid, Ggx, GgxLobe, GpuCamera, GpuLight, Incidence,
+    LambertLobe, Lobe, NoFresnel, Schlick, Vpl,
 };
 use support::adversary::{Bound, Light, Reach, Tile, log_uniform};
 use support::reference::{Brdf, Fresnel, Masking};
@@ -58,18 +58,16 @@ fn value_of_bytes(module: &Module, ty: Handle<Type>, bytes: &[u8]) -> Value {
 }
 
 /// A light whose bounds the shaders know, α from `least_roughness`.
-pub fn draw(rng: &mut Rng, least_roughness: f64) -> Light {
+fn draw(rng: &mut Rng, least_roughness: f64) -> Light {
     loop {
         let light = Light::draw(rng);
         match light.brdf {
             Brdf::Lambert { .. } | Brdf::Constant => return light,
             Brdf::Ggx {
                 roughness,
-                fresnel: Fresnel::None | Fresnel::Schlick(_),
-                masking,
-            } if f64::from(roughness) >= least_roughness
-                && matches!(masking, Masking::HeightCorrelated | Masking::Separable) =>
-            {
+                masking: Masking::HeightCorrelated | Masking::Separable,
+                ..
+            } if f64::from(roughness) >= least_roughness => {
                 return light;
             }
             _ => {}
@@ -77,41 +75,46 @@ pub fn draw(rng: &mut Rng, least_roughness: f64) -> Light {
     }
 }
 
+fn record_of<L: Lobe>(light: &Light, lobe: L) -> GpuLight
+where
+    for<'a> GpuLight: From<&'a Vpl<L>>,
+{
+    GpuLight::from(&Vpl::new(light.position, light.flux, lobe).expect("in the domain"))
+}
+
 /// The record of a light.
-pub fn gpu_light(light: &Light) -> GpuLight {
-    let vpl = |lobe| Vpl::new(light.position, light.flux, lobe).expect("in the domain");
-    let incidence = Incidence {
-        normal: light.normal,
-        incoming: light.incoming,
-    };
+fn gpu_light(light: &Light) -> GpuLight {
     match light.brdf {
         Brdf::Ggx {
-            roughness,
-            fresnel: Fresnel::Schlick(f0),
-            ..
+            roughness, fresnel, ..
         } => {
             let ggx = Ggx::new(roughness).expect("in the domain");
-            let schlick = Schlick::new(f0).expect("in the domain");
-            GpuLight::from(
-                &Vpl::new(
-                    light.position,
-                    light.flux,
-                    GgxLobe::new(ggx, schlick, incidence),
-                )
-                .expect("in the domain"),
-            )
+            let given = "in the domain";
+            let incidence = Incidence {
+                normal: light.normal,
+                incoming: light.incoming,
+            };
+            match fresnel {
+                Fresnel::None => record_of(light, GgxLobe::new(ggx, NoFresnel, incidence)),
+                Fresnel::Schlick(f0) => {
+                    let schlick = Schlick::new(f0).expect(given);
+                    record_of(light, GgxLobe::new(ggx, schlick, incidence))
+                }
+                Fresnel::Dielectric(eta) => {
+                    let dielectric = Dielectric::new(eta).expect(given);
+                    record_of(light, GgxLobe::new(ggx, dielectric, incidence))
+                }
+                Fresnel::Conductor(eta, kappa) => {
+                    let conductor = Conductor::new(eta, kappa).expect(given);
+                    record_of(light, GgxLobe::new(ggx, conductor, incidence))
+                }
+            }
         }
-        Brdf::Ggx { roughness, .. } => {
-            let ggx = Ggx::new(roughness).expect("in the domain");
-            GpuLight::from(&vpl(GgxLobe::new(ggx, NoFresnel, incidence)))
-        }
-        Brdf::Lambert { albedo } => {
-            let lobe = LambertLobe::new(albedo, light.normal).expect("in the domain");
-            GpuLight::from(&Vpl::new(light.position, light.flux, lobe).expect("in the domain"))
-        }
-        _ => GpuLight::from(
-            &Vpl::new(light.position, light.flux, ConstantLobe).expect("in the domain"),
+        Brdf::Lambert { albedo } => record_of(
+            light,
+            LambertLobe::new(albedo, light.normal).expect("in the domain"),
         ),
+        _ => record_of(light, ConstantLobe),
     }
 }
 
@@ -120,10 +123,14 @@ fn bounds(machine: &mut Machine, light: &Light) -> Vec<(&'static str, Value)> {
     let lit = record(machine.module, "SlcLight", &gpu_light(light));
     let unit = match light.brdf {
         Brdf::Ggx { fresnel, .. } => {
-            let most = match fresnel {
-                Fresnel::Schlick(_) => machine.call("slc_max_schlick", std::slice::from_ref(&lit)),
-                _ => Value::F32(1.0),
+            let name = match fresnel {
+                Fresnel::None => None,
+                Fresnel::Schlick(_) => Some("slc_max_schlick"),
+                Fresnel::Dielectric(_) => Some("slc_max_dielectric"),
+                Fresnel::Conductor(..) => Some("slc_max_conductor"),
             };
+            let most = name.map(|name| machine.call(name, std::slice::from_ref(&lit)));
+            let most = most.unwrap_or(Value::F32(1.0));
             ["slc_paper_ggx", "slc_tight_ggx"]
                 .map(|name| (name, machine.call(name, &[lit.clone(), most.clone()])))
                 .to_vec()
