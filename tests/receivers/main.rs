@@ -1,5 +1,6 @@
 //! Culling against the receivers of tiles.
 #![cfg(feature = "cull")]
 
+mod case;
 mod lists;
 mod scene;
