@@ -244,7 +244,9 @@
 //! # Scope
 //!
 //! The crate has lobes and their bounds, roulette, projection, tile tests, culling and interleaved sampling.
-//! It does not find lit points, trace visibility, shade, denoise, run on a GPU or store a scene.
+//! A [`Receiver`] is a surface point with what it reflects to the eye; of those of a tile, or of a block of tiles, there
+//! is a bound, so that lights are culled and drawn by what the eye sees of them.
+//! The crate does not find lit points, trace visibility, shade, denoise, run on a GPU or store a scene.
 //! `examples/render` shows one way to do these.
 //!
 //! # Features
