@@ -47,7 +47,11 @@ impl LtcFamily {
         let [x, y, z] = squares;
         let [of_row, of_all] = self.deviations;
         [(z, of_row), (x + y + z, of_all)].map(|(square, own)| {
-            round_up((sqrt_f64(square) + f64::from(own)) as f32, LENGTH_ROUNDINGS)
+            if square > 0.0 {
+                round_up((sqrt_f64(square) + f64::from(own)) as f32, LENGTH_ROUNDINGS)
+            } else {
+                own
+            }
         })
     }
 }

@@ -15,6 +15,7 @@ use support::reference::{self, Brdf, Masking, Vector};
 
 use crate::bits::Bits;
 use crate::culling;
+use crate::families;
 use crate::other_lobes;
 use crate::probe::{self, Probed};
 
@@ -23,13 +24,14 @@ pub fn everything(bits: &mut Bits) {
     for camera in &cameras {
         probe::any_camera(camera);
     }
-    match bits.byte() % 7 {
+    match bits.byte() % 8 {
         0 => glossy(bits, &cameras),
         1 => shapes(bits, &cameras),
         2 => fresnel(bits),
         3 => sizes(bits),
         4 => culling::everything(bits, &cameras),
         5 => other_lobes::foreign(bits, &cameras),
+        6 => families::families(bits),
         _ => other_lobes::others(bits, &cameras),
     }
 }

@@ -5,6 +5,7 @@
 mod bits;
 mod construct;
 mod culling;
+mod families;
 mod fields;
 mod findings;
 mod other_lobes;

@@ -28,7 +28,7 @@ fn cases() -> usize {
     std::env::var("CASES").map_or(300_000, |cases| cases.parse().expect("a number"))
 }
 
-/// Draws families until as many caps are tested as are wanted.
+/// Draws families until as many members are tested in a cap as are wanted.
 fn search(in_family: impl Fn(&mut Rng) -> usize + Sync + Send) {
     const BATCH: usize = 1024;
     let batch = |seed| {
@@ -40,7 +40,7 @@ fn search(in_family: impl Fn(&mut Rng) -> usize + Sync + Send) {
     };
     let batches = 0..(cases() / BATCH + 1) as u64;
     let tested: usize = batches.into_par_iter().map(batch).sum();
-    println!("{tested} caps");
+    println!("{tested} lobes in a cap");
 }
 
 /// Caps of any size, most of them where a member is great or small.
@@ -96,7 +96,7 @@ fn check<L: ReceiverLobe>(rng: &mut Rng, members: &[Member<L>]) -> usize {
         }
         check_nesting(rng, &cap, (&part, &whole));
     }
-    CAPS_PER_FAMILY
+    CAPS_PER_FAMILY * members.len()
 }
 
 /// A cap around another cap and a union around its part have the greater majorant. Each step may cost 96u of a chord and
