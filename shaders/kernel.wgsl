@@ -1,7 +1,7 @@
 // Kernel: what the kernels share. Needs `frame.wgsl` and `touch.wgsl`, and those that they need.
 //
-// The buffers are those of `GpuBuffer`, in group 0. A shader that shades defines, in any other group what it reads and
-// writes, and
+// The buffers are those of `GpuBuffer`, in group 0. A shader that shades declares what it reads and writes, from binding 16
+// on or in another group, and defines
 //
 //     struct SlcSurface { … }                          what a pixel sees
 //     fn slc_surface(pixel: vec2u) -> SlcSurface       reads that

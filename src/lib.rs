@@ -246,7 +246,7 @@
 //! The crate has lobes and their bounds, roulette, projection, tile tests, culling and interleaved sampling.
 //! A [`Receiver`] is a surface point with what it reflects to the eye; of those of a tile, or of a block of tiles, there
 //! is a bound, so that lights are culled and drawn by what the eye sees of them.
-//! The crate does not find lit points, trace visibility, shade, denoise, run on a GPU or store a scene.
+//! The crate does not find lit points, trace visibility, shade, denoise, talk to a GPU or store a scene.
 //! `examples/render` shows one way to do these.
 //!
 //! # Features
@@ -262,7 +262,7 @@
 //!   grids, depth intervals and interleaving, most under the names of the constructors' arguments. Values
 //!   are restored bit for bit. Deserialization goes through the constructors and returns their errors.
 //!   Bounds, projected shapes, batches and lists follow from these and are not serialized.
-//! - `wgsl`: the steps as text in WGSL, for shaders ([`wgsl`]).
+//! - `wgsl`: the steps as text in WGSL, and kernels that cull and shade ([`wgsl`]).
 //! - `bytemuck`: records that shaders can read: lights (`GpuLight`), bounds (`GpuBound`), projected shapes (`GpuEllipsoid`,
 //!   `GpuSphere`), and the camera and numbers of a frame (`GpuCamera`, `GpuFrame`). The two arrays of `LightLists` can be
 //!   uploaded unchanged.
@@ -345,8 +345,8 @@ pub use cull::{
 pub use interop::wgsl;
 #[cfg(feature = "bytemuck")]
 pub use interop::{
-    GpuBound, GpuBuffer, GpuCamera, GpuEllipsoid, GpuFrame, GpuLight, GpuProjected, GpuSphere,
-    GpuTile,
+    GpuBound, GpuBuffer, GpuCamera, GpuEllipsoid, GpuFrame, GpuKernel, GpuLight, GpuProjected,
+    GpuSphere, GpuTile,
 };
 pub use light::{
     ClusterSums, DistanceWindow, FilteredSample, FilteredSampling, FrameSeed, MipPyramid, Roulette,

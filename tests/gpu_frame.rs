@@ -3,8 +3,8 @@
 
 use stochastic_light_culling::{
     Camera, Direction, Ellipsoid, Error, Ggx, GgxLobe, GpuBound, GpuBuffer, GpuCamera, GpuFrame,
-    GpuLight, GpuTile, Incidence, Interleave, LambertLobe, NoFresnel, Roulette, Schlick, Seed,
-    TileGrid, Vpl,
+    GpuKernel, GpuLight, GpuTile, Incidence, Interleave, LambertLobe, NoFresnel, Roulette, Schlick,
+    Seed, TileGrid, Vpl,
     glam::{Mat3, Vec3},
 };
 
@@ -60,13 +60,13 @@ fn every_pixel_and_light_has_its_thread() {
     for (size, width) in SIZES {
         for lights in [0, 1, 64, 65, 70_000] {
             let (frame, interleave) = frame(size, width, lights).unwrap();
-            let [columns, rows, subregions] = frame.workgroups();
+            let [columns, rows, subregions] = frame.workgroups(GpuKernel::Tiles);
             assert_eq!(subregions, interleave.subregions());
             for subregion in 0..subregions {
                 let [x, y] = interleave.subregion_size(subregion);
                 assert!(x <= 16 * columns && y <= 16 * rows);
             }
-            assert!(64 * frame.workgroups_of_bounds()[0] >= lights);
+            assert!(64 * frame.workgroups(GpuKernel::Bounds)[0] >= lights);
             assert_eq!(frame.lists(), u64::from(2 * columns * rows * subregions));
         }
     }

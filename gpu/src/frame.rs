@@ -1,10 +1,9 @@
 use std::time::Duration;
 
 use bytemuck::Pod;
-use stochastic_light_culling::GpuBuffer::{
-    self, Edges, Frame as Record, Intervals, Lights, Lists, Needed, Projected, Ranges, Xis,
+use stochastic_light_culling::{
+    Camera, GpuBuffer, GpuFrame, GpuKernel, GpuLight, Interleave, wgsl,
 };
-use stochastic_light_culling::{Camera, GpuFrame, GpuLight, Interleave, wgsl};
 use wgpu::Buffer;
 
 use crate::{Dispatch, Error, Gpu, Kernel};
@@ -20,30 +19,16 @@ pub struct Frame<'a> {
 /// A kernel, and the time that it took, where the adapter has timestamps.
 pub type Time = (&'static str, Option<Duration>);
 
-/// A text of a kernel, its entry point, and the buffers that it uses.
-type Pass = (&'static str, &'static str, &'static [GpuBuffer]);
-
-const BOUNDS: Pass = (
-    wgsl::BOUNDS_KERNEL,
-    "slc_bound_lights",
-    &[Record, Lights, Projected, Xis],
-);
-const TILES: Pass = (
-    wgsl::TILE_KERNEL,
-    "slc_cull_and_shade",
-    &[Record, Lights, Projected, Xis, Edges],
-);
-const DEPTHS: Pass = (wgsl::DEPTHS_KERNEL, "slc_part_depths", &[Record, Intervals]);
-const LISTS: Pass = (
-    wgsl::LISTS_KERNEL,
-    "slc_list_lights",
-    &[Record, Projected, Edges, Intervals, Ranges, Lists, Needed],
-);
-const SHADE: Pass = (
-    wgsl::SHADE_KERNEL,
-    "slc_shade",
-    &[Record, Lights, Xis, Intervals, Ranges, Lists],
-);
+/// The text of a kernel.
+fn text(kernel: GpuKernel) -> &'static str {
+    match kernel {
+        GpuKernel::Bounds => wgsl::BOUNDS_KERNEL,
+        GpuKernel::Tiles => wgsl::TILE_KERNEL,
+        GpuKernel::Depths => wgsl::DEPTHS_KERNEL,
+        GpuKernel::Lists => wgsl::LISTS_KERNEL,
+        GpuKernel::Shade => wgsl::SHADE_KERNEL,
+    }
+}
 
 impl<'a> Frame<'a> {
     /// Makes the buffers of a frame of `lights`, as the record has many.
@@ -59,9 +44,9 @@ impl<'a> Frame<'a> {
     ) -> Result<Self, Error> {
         let edges: Vec<[f32; 2]> = record.edges(camera, interleave).collect();
         let buffer = |buffer| match buffer {
-            Record => gpu.upload(&[record]),
-            Lights => gpu.upload(lights),
-            Edges => gpu.upload(&edges),
+            GpuBuffer::Frame => gpu.upload(&[record]),
+            GpuBuffer::Lights => gpu.upload(lights),
+            GpuBuffer::Edges => gpu.upload(&edges),
             _ => gpu.zeroed::<u32>(record.bytes(buffer) as usize / 4),
         };
         let buffers = GpuBuffer::ALL
@@ -102,7 +87,7 @@ impl<'a> Frame<'a> {
         self.check(record)?;
         self.gpu
             .queue
-            .write_buffer(self.buffer(Record), 0, bytemuck::bytes_of(record));
+            .write_buffer(self.buffer(GpuBuffer::Frame), 0, bytemuck::bytes_of(record));
         Ok(())
     }
 
@@ -124,23 +109,24 @@ impl<'a> Frame<'a> {
         [bounds, shading]: [Caller<'c>; 2],
     ) -> Result<Compiled<'c>, Error> {
         let depths = Caller {
-            own: &shading.own[..shading.of_surface],
+            buffers: &shading.buffers[..shading.of_surface],
             ..shading
         };
         let passes = match method {
-            Method::Tiles => vec![(BOUNDS, bounds), (TILES, shading)],
+            Method::Tiles => vec![(GpuKernel::Bounds, bounds), (GpuKernel::Tiles, shading)],
             Method::Lists => vec![
-                (BOUNDS, bounds),
-                (DEPTHS, depths),
-                (LISTS, Caller::NONE),
-                (SHADE, shading),
+                (GpuKernel::Bounds, bounds),
+                (GpuKernel::Depths, depths),
+                (GpuKernel::Lists, Caller::NONE),
+                (GpuKernel::Shade, shading),
             ],
-            Method::ListsAlone => vec![(LISTS, Caller::NONE)],
+            Method::ListsAlone => vec![(GpuKernel::Lists, Caller::NONE)],
         };
-        let compiled = |(pass, caller): (Pass, Caller<'c>)| {
-            let texts = [wgsl::FUNCTIONS, wgsl::KERNEL, pass.0];
-            let kernel = self.gpu.kernel(&[&texts, caller.texts].concat(), pass.1)?;
-            Ok((pass, caller, kernel))
+        let compiled = |(kernel, caller): (GpuKernel, Caller<'c>)| {
+            let texts = [wgsl::FUNCTIONS, wgsl::KERNEL, text(kernel)];
+            let texts = [&texts, caller.texts].concat();
+            let compiled = self.gpu.kernel(&texts, kernel.entry_point())?;
+            Ok((kernel, caller, compiled))
         };
         passes
             .into_iter()
@@ -155,29 +141,33 @@ impl<'a> Frame<'a> {
     ///
     /// Those of [`Gpu::run`].
     pub fn run(&self, Compiled(passes): &Compiled) -> Result<Vec<Time>, Error> {
-        self.gpu.queue.write_buffer(self.buffer(Needed), 0, &[0; 4]);
-        let bound = |(pass, ..): &(Pass, Caller, Kernel)| -> Vec<(u32, &Buffer)> {
-            let buffers = pass.2.iter();
-            buffers
-                .map(|buffer| (buffer.binding(), self.buffer(*buffer)))
-                .collect()
-        };
-        let bound: Vec<_> = passes.iter().map(bound).collect();
+        self.gpu
+            .queue
+            .write_buffer(self.buffer(GpuBuffer::Needed), 0, &[0; 4]);
+        let mut bound = Vec::new();
+        for (kernel, caller, _) in passes {
+            let of_kernel = kernel.buffers().iter();
+            let of_kernel = of_kernel.map(|buffer| (buffer.binding(), self.buffer(*buffer)));
+            bound.push(
+                of_kernel
+                    .chain(caller.buffers.iter().copied())
+                    .collect::<Vec<_>>(),
+            );
+        }
         let mut dispatches = Vec::new();
-        for ((pass, caller, kernel), buffers) in passes.iter().zip(&bound) {
+        for ((kernel, _, compiled), buffers) in passes.iter().zip(&bound) {
             dispatches.push(Dispatch {
-                kernel,
+                kernel: compiled,
                 buffers,
-                own: caller.own,
-                workgroups: if *pass == BOUNDS {
-                    self.record.workgroups_of_bounds()
-                } else {
-                    self.record.workgroups()
-                },
+                workgroups: self.record.workgroups(*kernel),
             });
         }
         let times = self.gpu.run(&dispatches)?;
-        Ok(passes.iter().map(|(pass, ..)| pass.1).zip(times).collect())
+        Ok(passes
+            .iter()
+            .map(|(kernel, ..)| kernel.entry_point())
+            .zip(times)
+            .collect())
     }
 }
 
@@ -193,15 +183,15 @@ pub enum Method {
 }
 
 /// Compiled passes.
-pub struct Compiled<'a>(Vec<(Pass, Caller<'a>, Kernel)>);
+pub struct Compiled<'a>(Vec<(GpuKernel, Caller<'a>, Kernel)>);
 
 /// What a caller adds to a kernel.
 #[derive(Clone, Copy)]
 pub struct Caller<'a> {
     /// The functions that the kernel asks for.
     pub texts: &'a [&'a str],
-    /// What is bound to group 1.
-    pub own: &'a [(u32, &'a Buffer)],
+    /// What is bound besides the buffers of the kernel, from binding 16 on.
+    pub buffers: &'a [(u32, &'a Buffer)],
     /// How many of these `slc_surface` and `slc_depth` use; they come first.
     pub of_surface: usize,
 }
@@ -210,7 +200,7 @@ impl Caller<'_> {
     /// For a kernel that asks for nothing.
     pub const NONE: Self = Self {
         texts: &[],
-        own: &[],
+        buffers: &[],
         of_surface: 0,
     };
 }

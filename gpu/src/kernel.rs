@@ -20,8 +20,6 @@ pub struct Dispatch<'a> {
     pub kernel: &'a Kernel,
     /// Each `@binding` of group 0 that the entry point uses, no others, with its buffer.
     pub buffers: &'a [(u32, &'a Buffer)],
-    /// The same of group 1.
-    pub own: &'a [(u32, &'a Buffer)],
     /// The number of workgroups along each axis.
     pub workgroups: [u32; 3],
 }
@@ -117,11 +115,7 @@ impl Gpu {
             workgroups: [x, y, z],
             ..
         } = *dispatch;
-        let bound = (0..).zip([dispatch.buffers, dispatch.own]);
-        let bound = bound.filter(|(_, buffers)| !buffers.is_empty());
-        let groups: Vec<_> = bound
-            .map(|(group, buffers)| (group, self.bind(kernel, group, buffers)))
-            .collect();
+        let group = self.bind(kernel, dispatch.buffers);
         let timestamp_writes = queries.map(|(query_set, first)| ComputePassTimestampWrites {
             query_set,
             beginning_of_pass_write_index: Some(first),
@@ -132,13 +126,11 @@ impl Gpu {
             timestamp_writes,
         });
         pass.set_pipeline(&kernel.pipeline);
-        for (group, buffers) in &groups {
-            pass.set_bind_group(*group, buffers, &[]);
-        }
+        pass.set_bind_group(0, &group, &[]);
         pass.dispatch_workgroups(x, y, z);
     }
 
-    fn bind(&self, kernel: &Kernel, group: u32, buffers: &[(u32, &Buffer)]) -> BindGroup {
+    fn bind(&self, kernel: &Kernel, buffers: &[(u32, &Buffer)]) -> BindGroup {
         let entries: Vec<_> = buffers
             .iter()
             .map(|(binding, buffer)| BindGroupEntry {
@@ -148,7 +140,7 @@ impl Gpu {
             .collect();
         self.device.create_bind_group(&BindGroupDescriptor {
             label: Some(&kernel.entry),
-            layout: &kernel.pipeline.get_bind_group_layout(group),
+            layout: &kernel.pipeline.get_bind_group_layout(0),
             entries: &entries,
         })
     }

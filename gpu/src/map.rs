@@ -62,7 +62,6 @@ impl Gpu {
         self.run(&[Dispatch {
             kernel: &kernel,
             buffers: &buffers,
-            own: &[],
             workgroups,
         }])?;
         let expected = [inputs.len().max(1) as u32; 2];

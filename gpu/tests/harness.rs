@@ -58,7 +58,6 @@ fn mistakes_are_errors_with_their_place() {
         let dispatch = Dispatch {
             kernel: &kernel,
             buffers: &[(binding, &numbers)],
-            own: &[],
             workgroups: [groups, 1, 1],
         };
         gpu.run(&[dispatch])

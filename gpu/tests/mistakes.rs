@@ -8,7 +8,7 @@ use stochastic_light_culling::{
 /// A wall, and constant lights in front of it.
 const WALL: &str = "
     struct SlcSurface { point: vec3f }
-    @group(1) @binding(0) var<storage, read_write> picture: array<f32>;
+    @group(0) @binding(16) var<storage, read_write> picture: array<f32>;
     fn slc_surface(pixel: vec2u) -> SlcSurface {
         let place = (vec2f(pixel) + 0.5) / vec2f(slc_this.image_size) - 0.5;
         return SlcSurface(vec3f(place, -4.0));
@@ -46,7 +46,7 @@ fn picture(gpu: &Gpu, count: u32, method: Method) -> Vec<f32> {
     let picture = gpu.zeroed::<f32>((SIZE[0] * SIZE[1]) as usize).unwrap();
     let shading = Caller {
         texts: &[WALL],
-        own: &[(0, &picture)],
+        buffers: &[(16, &picture)],
         of_surface: 0,
     };
     let bounds = Caller {

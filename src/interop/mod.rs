@@ -10,6 +10,6 @@ pub mod wgsl;
 
 #[cfg(feature = "bytemuck")]
 pub use records::{
-    GpuBound, GpuBuffer, GpuCamera, GpuEllipsoid, GpuFrame, GpuLight, GpuProjected, GpuSphere,
-    GpuTile,
+    GpuBound, GpuBuffer, GpuCamera, GpuEllipsoid, GpuFrame, GpuKernel, GpuLight, GpuProjected,
+    GpuSphere, GpuTile,
 };

@@ -22,7 +22,8 @@
 //! memory and shades its pixels. Where shading is a pass of its own, such as one over transparent surfaces too, the second is
 //! three: [`DEPTHS_KERNEL`], [`LISTS_KERNEL`] and [`SHADE_KERNEL`] or a shader of the caller's. The text of [`KERNEL`] says
 //! which functions the caller defines. With the feature `bytemuck`, `GpuFrame` has the numbers of a frame, the sizes of its
-//! buffers and the numbers of workgroups, and `GpuBuffer` the bindings.
+//! buffers and the numbers of workgroups, `GpuBuffer` the bindings, and `GpuKernel` what each kernel binds. The program
+//! `gpu/examples/cull_and_shade.rs` of the repository is a whole one.
 //!
 //! Any number of lights may touch a tile: no list overflows, or else its pixels are shaded by all lights.
 //!

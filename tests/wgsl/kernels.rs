@@ -9,7 +9,7 @@ use stochastic_light_culling::wgsl::{
     BOUNDS_KERNEL, DEPTHS_KERNEL, FUNCTIONS, KERNEL, LISTS_KERNEL, SHADE_KERNEL, TILE_KERNEL,
 };
 use stochastic_light_culling::{
-    GpuBound, GpuBuffer, GpuCamera, GpuFrame, GpuLight, GpuProjected, GpuTile,
+    GpuBound, GpuCamera, GpuFrame, GpuKernel, GpuLight, GpuProjected, GpuTile,
 };
 
 use crate::valid::module;
@@ -23,12 +23,12 @@ const CALLER: &str = "
     fn slc_store(pixel: vec2u, surface: SlcSurface, sum: vec4f) {}
     fn slc_unit_bound(light: SlcLight) -> SlcBound { return slc_paper_constant(); }";
 
-const ENTRIES: [&str; 5] = [
-    "slc_bound_lights",
-    "slc_cull_and_shade",
-    "slc_part_depths",
-    "slc_list_lights",
-    "slc_shade",
+const KERNELS: [GpuKernel; 5] = [
+    GpuKernel::Bounds,
+    GpuKernel::Tiles,
+    GpuKernel::Depths,
+    GpuKernel::Lists,
+    GpuKernel::Shade,
 ];
 
 fn all() -> Module {
@@ -59,7 +59,7 @@ fn each_kernel_is_valid_by_itself() {
         .iter()
         .map(|entry| entry.name.clone())
         .collect::<Vec<_>>();
-    assert_eq!(entries, ENTRIES);
+    assert_eq!(entries, KERNELS.map(GpuKernel::entry_point));
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn kernels_run_anywhere() {
     for (i, entry) in module.entry_points.iter().enumerate() {
         assert_eq!(entry.stage, ShaderStage::Compute);
         assert!(entry.workgroup_size.iter().product::<u32>() <= 256);
-        let (mut buffers, mut shared) = (0, 0);
+        let (mut buffers, mut shared, mut bindings) = (0, 0, Vec::new());
         for (handle, variable) in module.global_variables.iter() {
             if info.get_entry_point(i)[handle].is_empty() {
                 continue;
@@ -104,22 +104,20 @@ fn kernels_run_anywhere() {
                 AddressSpace::WorkGroup => shared += layouter[variable.ty].to_stride(),
                 _ => {}
             }
-            let Some(binding) = &variable.binding else {
-                continue;
-            };
-            let known = GpuBuffer::ALL.map(GpuBuffer::binding);
-            assert!(binding.group == 0 && known.contains(&binding.binding));
+            if let Some(binding) = &variable.binding {
+                assert_eq!(binding.group, 0);
+                bindings.push(binding.binding);
+            }
         }
-        let most = if entry.name == "slc_list_lights" {
-            6
-        } else {
-            5
-        };
+        bindings.sort_unstable();
+        let kernel = KERNELS[i];
+        let known = kernel.buffers().iter().map(|buffer| buffer.binding());
         assert!(
-            buffers <= most,
-            "{} has {buffers} storage buffers",
-            entry.name
+            bindings.iter().copied().eq(known),
+            "{kernel:?}: {bindings:?}"
         );
-        assert!(shared <= 16384, "{} shares {shared} bytes", entry.name);
+        let most = if kernel == GpuKernel::Lists { 6 } else { 5 };
+        assert!(buffers <= most, "{kernel:?} has {buffers} storage buffers");
+        assert!(shared <= 16384, "{kernel:?} shares {shared} bytes");
     }
 }

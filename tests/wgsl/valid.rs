@@ -2,7 +2,9 @@
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, front::wgsl};
-use stochastic_light_culling::wgsl::{BOUND, LIGHT, LOBE, NUM, PROJECT, TABLE, TIGHT, TOUCH, VIEW};
+use stochastic_light_culling::wgsl::{
+    BOUND, FRAME, LIGHT, LOBE, NUM, PROJECT, TABLE, TIGHT, TOUCH, VIEW,
+};
 
 /// What the caller of the tight bound declares.
 pub const DECLARED: &str = "@group(0) @binding(0) var<storage, read> slc_table: array<vec4f>;";
@@ -70,6 +72,7 @@ fn budgets_are_those_that_are_counted() {
         ("bound.wgsl", BOUND),
         ("tight.wgsl", TIGHT),
         ("project.wgsl", PROJECT),
+        ("frame.wgsl", FRAME),
     ];
     let rows = page.lines().filter(|line| line.starts_with("| `SLC_"));
     let mut counted = 0;
@@ -91,7 +94,7 @@ fn budgets_are_those_that_are_counted() {
         );
         counted += 1;
     }
-    let texts = [NUM, LOBE, LIGHT, BOUND, TIGHT, PROJECT, TOUCH, VIEW].concat();
+    let texts = [NUM, LOBE, LIGHT, BOUND, TIGHT, PROJECT, TOUCH, VIEW, FRAME].concat();
     assert_eq!(texts.matches("_ULPS: f32 = ").count(), counted);
 }
 

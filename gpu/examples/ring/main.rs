@@ -72,7 +72,6 @@ fn main() -> ExitCode {
 
 fn render(arguments: &Arguments) -> Result<(), String> {
     let said = |error: stochastic_light_culling::Error| error.to_string();
-    let gpu = Gpu::new().map_err(|error| error.to_string())?;
     let stage = Stage::new(Request {
         alpha: arguments.alpha,
         f0: arguments.f0,
@@ -83,6 +82,7 @@ fn render(arguments: &Arguments) -> Result<(), String> {
         interleave: arguments.interleave,
     });
     let stage = stage.map_err(said)?;
+    let gpu = Gpu::new().map_err(|error| error.to_string())?;
     make_folder(&arguments.out)?;
     let (by_cpu, cpu_ms) = stage.by_cpu().map_err(said)?;
     say(format_args!(

@@ -10,7 +10,7 @@ use super::stage::Stage;
 
 /// Of glossy lights: bound, and lobe.
 const GLOSSY: [&str; 2] = [
-    "@group(1) @binding(0) var<storage, read> slc_table: array<vec4f>;
+    "@group(0) @binding(16) var<storage, read> slc_table: array<vec4f>;
     fn slc_unit_bound(light: SlcLight) -> SlcBound { return slc_tight_ggx(light, slc_max_schlick(light)); }",
     "fn lobe(light: SlcLight, direction: vec3f) -> f32 { return slc_ggx_schlick(light, direction); }",
 ];
@@ -26,9 +26,9 @@ const DIFFUSE: [&str; 2] = [
 /// The irradiance of a pixel in three channels, and the number of lights that it accepts.
 const SHADING: &str = "
 struct SlcSurface { position: vec3f, depth: f32, normal: vec3f, unused: f32 }
-@group(1) @binding(0) var<storage, read> surfaces: array<SlcSurface>;
-@group(1) @binding(1) var<storage, read> tints: array<vec4f>;
-@group(1) @binding(2) var<storage, read_write> picture: array<vec4f>;
+@group(0) @binding(16) var<storage, read> surfaces: array<SlcSurface>;
+@group(0) @binding(17) var<storage, read> tints: array<vec4f>;
+@group(0) @binding(18) var<storage, read_write> picture: array<vec4f>;
 
 fn place(pixel: vec2u) -> u32 { return pixel.y * slc_this.image_size.x + pixel.x; }
 fn slc_surface(pixel: vec2u) -> SlcSurface { return surfaces[place(pixel)]; }
@@ -73,7 +73,7 @@ impl<'a> Lighting<'a> {
             stage,
             &stage.lights.glossy,
             GLOSSY,
-            (vec![(0, table)], seed),
+            (vec![(16, table)], seed),
         )
     }
 
@@ -118,9 +118,9 @@ impl<'a> Lighting<'a> {
             texts,
             of_bounds,
             of_shading: [
-                (0, gpu.upload(&surfaces(stage))?),
-                (1, gpu.upload(&tints)?),
-                (2, gpu.zeroed::<[f32; 4]>(pixels)?),
+                (16, gpu.upload(&surfaces(stage))?),
+                (17, gpu.upload(&tints)?),
+                (18, gpu.zeroed::<[f32; 4]>(pixels)?),
             ],
         })
     }
@@ -145,12 +145,12 @@ impl<'a> Lighting<'a> {
             } else {
                 &bounds
             },
-            own: &of_bounds,
+            buffers: &of_bounds,
             of_surface: 0,
         };
         let shading = Caller {
             texts: &[SHADING, lobe],
-            own: &of_shading,
+            buffers: &of_shading,
             of_surface: 1,
         };
         work(&self.frame.compile(method, [bounds, shading])?)

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::GpuCamera;
+use super::kernel::LIGHTS_OF_WORKGROUP;
 use crate::base::{Error, number_in};
 use crate::light::{Roulette, Seed};
 use crate::view::{Camera, Interleave, TileGrid};
@@ -13,12 +14,14 @@ use crate::view::{Camera, Interleave, TileGrid};
 /// i lights the subregion that [`Interleave::split_light`] says, with [`Interleave::weight`] times its flux.
 ///
 /// ```
-/// use stochastic_light_culling::{Camera, GpuBuffer, GpuFrame, Interleave, Roulette, Seed, glam::Vec3};
+/// use stochastic_light_culling::{
+///     Camera, GpuBuffer, GpuFrame, GpuKernel, Interleave, Roulette, Seed, glam::Vec3,
+/// };
 ///
 /// let camera = Camera::look_at(Vec3::splat(6.0), Vec3::ZERO, Vec3::Y, 1.0, 16.0 / 9.0, 0.1..100.0)?;
 /// let interleave = Interleave::new([1920, 1080], 8)?;
 /// let frame = GpuFrame::new(&camera, &interleave, &Roulette::new(0.001)?, 65536)?.seeded(Seed(1), 7);
-/// assert_eq!(frame.workgroups(), [15, 9, 64]);
+/// assert_eq!(frame.workgroups(GpuKernel::Tiles), [15, 9, 64]);
 /// assert_eq!(frame.bytes(GpuBuffer::Lights), 64 * 65536);
 /// // The edges of 15 columns and 9 rows of tiles, of 8 pixels beside each other.
 /// assert_eq!(frame.edges(&camera, &interleave).count(), 8 * (15 + 9));
@@ -57,8 +60,6 @@ pub struct GpuFrame {
 const TILE_SIZE: u32 = 16;
 /// The most workgroups along an axis.
 const MOST_WORKGROUPS: u32 = 65535;
-/// Lights that a workgroup of the kernel of bounds takes.
-const LIGHTS_OF_WORKGROUP: u32 = 64;
 /// The most depth intervals of a tile.
 const MOST_INTERVALS: u32 = 32;
 /// The least squared distance to a light, where the caller sets none. A quotient by it is finite.
@@ -189,19 +190,6 @@ impl GpuFrame {
         (columns * rows)
             .saturating_mul(subregions)
             .saturating_mul(u64::from(self.intervals))
-    }
-
-    /// How many workgroups the kernels of tiles, depths, lists and shading take: one for each tile of each subregion.
-    #[must_use]
-    pub fn workgroups(&self) -> [u32; 3] {
-        let [columns, rows] = self.tiles;
-        [columns, rows, self.interleave * self.interleave]
-    }
-
-    /// How many workgroups the kernel of bounds takes.
-    #[must_use]
-    pub fn workgroups_of_bounds(&self) -> [u32; 3] {
-        [self.lights.div_ceil(LIGHTS_OF_WORKGROUP).max(1), 1, 1]
     }
 
     /// The edges of tiles, for [`GpuBuffer::Edges`](crate::GpuBuffer::Edges): \[least, greatest\] x/z of each column of

@@ -2,12 +2,14 @@
 
 mod buffer;
 mod frame;
+mod kernel;
 mod light;
 mod shape;
 mod view;
 
 pub use buffer::GpuBuffer;
 pub use frame::GpuFrame;
+pub use kernel::GpuKernel;
 pub use light::GpuLight;
 pub use shape::{GpuBound, GpuEllipsoid, GpuProjected, GpuSphere};
 pub use view::{GpuCamera, GpuTile};
