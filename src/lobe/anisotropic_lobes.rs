@@ -52,7 +52,13 @@ pub(super) fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
     let members = GgxMembers::one(at_any_azimuth);
     members.majorant::<G>(
         #[inline(always)]
-        |cosines| quasi_convex_maximum(&reflectance, cosines),
+        |cosines| {
+            quasi_convex_maximum(
+                #[inline(always)]
+                |cosine| reflectance(cosine),
+                cosines,
+            )
+        },
         #[inline(always)]
         |half_vectors| {
             let factors = roughness.map(

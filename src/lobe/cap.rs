@@ -160,8 +160,8 @@ impl Cap {
         } else {
             0.0
         };
-        let chord = (apart + other.chord + rounding).min(2.0);
-        self.chord = self.chord.max(chord);
+        let chord = Real::min(apart + other.chord + rounding, 2.0);
+        self.chord = Real::max(chord, self.chord);
     }
 
     /// The cap in as many lanes as `like` has, not enlarged.

@@ -157,14 +157,6 @@ impl FresnelMajorant {
         }
     }
 
-    /// A majorant of both.
-    pub(super) fn max(self, other: Self) -> Self {
-        Self {
-            base: self.base.max(other.base),
-            rise: self.rise.max(other.rise),
-        }
-    }
-
     /// Its value, at most 1.
     #[inline(always)]
     pub(super) fn value<N: Single>(self, half_angle_cosine: N) -> N {

@@ -8,7 +8,7 @@ use super::{
     AnisotropicGgxLobe, Cap, Caps, Fresnel, FresnelMajorant, GgxLobe, HeightCorrelated, LobeFamily,
     Majorant, MaskingShadowing, ReceiverLobe,
 };
-use crate::num::{Single, round_up};
+use crate::num::{Real, Single, round_up};
 
 /// Budget for the ratio of both roughnesses.
 const STRETCH_ROUNDINGS: u16 = 1;
@@ -48,18 +48,19 @@ impl Numbers {
         self.incident_cosine <= 0.0
     }
 
-    /// All but the caps.
-    fn union_without_caps(self, other: Self) -> Self {
-        let ([least, most], [other_least, other_most]) = (self.roughness, other.roughness);
-        Self {
-            incident_cosine: self.incident_cosine.min(other.incident_cosine),
-            incident_root: self.incident_root.min(other.incident_root),
-            roughness: [least.min(other_least), most.max(other_most)],
-            stretch: self.stretch.max(other.stretch),
-            smoothest: self.smoothest.min(other.smoothest),
-            fresnel: self.fresnel.max(other.fresnel),
-            ..self
-        }
+    /// Joins all but the caps of another family. In place: copies would take longer than all the rest.
+    #[inline(always)]
+    fn join_without_caps(&mut self, other: &Self) {
+        let least = |own: &mut f32, other: f32| *own = Real::min(other, *own);
+        let most = |own: &mut f32, other: f32| *own = Real::max(other, *own);
+        least(&mut self.incident_cosine, other.incident_cosine);
+        least(&mut self.incident_root, other.incident_root);
+        least(&mut self.roughness[0], other.roughness[0]);
+        most(&mut self.roughness[1], other.roughness[1]);
+        most(&mut self.stretch, other.stretch);
+        least(&mut self.smoothest, other.smoothest);
+        most(&mut self.fresnel.base, other.fresnel.base);
+        most(&mut self.fresnel.rise, other.fresnel.rise);
     }
 }
 
@@ -86,6 +87,7 @@ impl NumbersSum {
 impl<F: Fresnel, G: MaskingShadowing> ReceiverLobe for GgxLobe<F, G> {
     type Family = GgxFamily<G>;
 
+    #[inline(always)]
     fn family(&self) -> GgxFamily<G> {
         GgxFamily::new(Numbers {
             normals: Cap::of_axis(self.normal()),
@@ -103,6 +105,7 @@ impl<F: Fresnel, G: MaskingShadowing> ReceiverLobe for GgxLobe<F, G> {
 impl<F: Fresnel, G: MaskingShadowing> ReceiverLobe for AnisotropicGgxLobe<F, G> {
     type Family = GgxFamily<G>;
 
+    #[inline(always)]
     fn family(&self) -> GgxFamily<G> {
         let [along, across] = self.ggx().roughness();
         let (rougher, smoother) = (along.max(across), along.min(across));
@@ -145,7 +148,7 @@ impl<G: MaskingShadowing> LobeFamily for GgxFamily<G> {
         }
         sum.normals.add(&numbers.normals);
         sum.incoming.add(&numbers.incoming);
-        sum.numbers = sum.numbers.union_without_caps(*numbers);
+        sum.numbers.join_without_caps(numbers);
     }
 
     fn mean(sum: &NumbersSum) -> Self {

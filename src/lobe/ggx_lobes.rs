@@ -227,7 +227,13 @@ impl<N: Single> GgxLobes<N> {
         let alpha_squared = self.roughness * self.roughness;
         members.majorant::<G>(
             #[inline(always)]
-            |cosines| quasi_convex_maximum(&reflectance, cosines),
+            |cosines| {
+                quasi_convex_maximum(
+                    #[inline(always)]
+                    |cosine| reflectance(cosine),
+                    cosines,
+                )
+            },
             #[inline(always)]
             |half_vectors| {
                 members.ndf(

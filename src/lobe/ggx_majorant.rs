@@ -93,10 +93,16 @@ impl<N: Single> GgxMembers<N> {
         let ndf = ndf(&half_vectors);
         let greatest = fresnel(half_vectors.half_angle_cosines())
             * ndf.greatest
-            * self.masking::<G>(outgoing_cosine.greatest, &masking_root);
+            * self.masking::<G>(
+                outgoing_cosine.greatest,
+                masking_root(outgoing_cosine.greatest),
+            );
         let typical = fresnel(half_vectors.typical_half_angle_cosines())
             * ndf.typical
-            * self.masking::<G>(outgoing_cosine.typical, &masking_root);
+            * self.masking::<G>(
+                outgoing_cosine.typical,
+                masking_root(outgoing_cosine.typical),
+            );
         // Both may underflow.
         let least = zero.splat(f32::MIN_POSITIVE);
         let greatest = Real::max(greatest.round_up(MAXIMUM_WITHIN_ROUNDINGS), least);
@@ -105,14 +111,14 @@ impl<N: Single> GgxMembers<N> {
         Majorant { greatest, typical }
     }
 
-    /// G2/(4μ_i) for a μ_o.
+    /// G2/(4μ_i) for a μ_o and its root.
     #[inline(always)]
-    fn masking<G: MaskingShadowing>(&self, cosine: N, masking_root: impl Fn(N) -> N) -> N {
+    fn masking<G: MaskingShadowing>(&self, cosine: N, root: N) -> N {
         G::over_four_incident_cosines_in_lanes(
             self.incident_cosine,
             self.incident_root,
             cosine,
-            masking_root(cosine),
+            root,
         )
     }
 

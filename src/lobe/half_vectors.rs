@@ -85,7 +85,6 @@ impl<N: Single> HalfVectors<N> {
     pub fn least_scaled_sine(&self, to_frame: &Matrix3<N>, factors: [N; 2]) -> N {
         let [a, b] = factors;
         let Vector3 { x, y, .. } = *to_frame * self.middle;
-        let length = |x: N, y: N| (x * x + y * y).sqrt();
         let (zero, chord) = (a.zero(), self.chord);
         let together = length(x * a, y * b) - chord * a.max(b);
         let alone = length(
@@ -94,4 +93,10 @@ impl<N: Single> HalfVectors<N> {
         );
         Real::max(together, alone) / self.lengths[1] * round_down(1.0, SINE_ROUNDINGS)
     }
+}
+
+/// √(x² + y²)
+#[inline(always)]
+fn length<N: Single>(x: N, y: N) -> N {
+    (x * x + y * y).sqrt()
 }

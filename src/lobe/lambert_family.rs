@@ -18,6 +18,7 @@ pub struct LambertFamily {
 impl ReceiverLobe for LambertLobe {
     type Family = LambertFamily;
 
+    #[inline(always)]
     fn family(&self) -> LambertFamily {
         LambertFamily {
             albedo: self.albedo(),

@@ -299,6 +299,7 @@ pub struct SumFamily<A, B> {
 impl<A: ReceiverLobe, B: ReceiverLobe> ReceiverLobe for LobeSum<A, B> {
     type Family = SumFamily<A::Family, B::Family>;
 
+    #[inline(always)]
     fn family(&self) -> Self::Family {
         let (first, second) = &self.lobes;
         SumFamily {

@@ -88,19 +88,25 @@ impl<F: LobeFamily> ReceiverCluster<F> {
         let way = light.position - Vector3::splat(flux, self.center().into());
         let margin = f32::from(self.merges()) * (MERGE_CHORD_ROUNDINGS * UNIT_ROUNDOFF);
         let (toward, distance) = Caps::of_balls(way, flux.splat(self.radius()), margin);
-        let of_light = L::majorant_in_lanes(light.numbers, &light.lobe_of, &toward.opposite());
+        let of_light = L::majorant_in_lanes(
+            light.numbers,
+            #[inline(always)]
+            |lane| (light.lobe_of)(lane),
+            &toward.opposite(),
+        );
         let of_receivers = self.family().majorant_in_lanes(&toward);
         let delta = roulette.delta() * self.delta_scale();
         // NaN if the squared length is.
         let least = flux.splat(least_distance_squared);
-        // Finite, so that an infinite bound stays infinite.
-        let over_delta = |squared: N| (Real::max(squared, least) * delta).min(flux.splat(f32::MAX));
+        let over_delta = [distance * distance, way.length_squared()].map(
+            // Finite, so that an infinite bound stays infinite.
+            #[inline(always)]
+            |squared| (Real::max(squared, least) * delta).min(flux.splat(f32::MAX)),
+        );
         let roundings = RADIANCE_ROUNDINGS + MERGE_ROUNDINGS * self.merges();
-        let greatest = (flux * of_light.greatest * of_receivers.greatest
-            / over_delta(distance * distance))
-        .round_up(roundings);
-        let typical =
-            flux * of_light.typical * of_receivers.typical / over_delta(way.length_squared());
+        let greatest =
+            (flux * of_light.greatest * of_receivers.greatest / over_delta[0]).round_up(roundings);
+        let typical = flux * of_light.typical * of_receivers.typical / over_delta[1];
         Majorant {
             greatest,
             typical: typical.min(greatest),

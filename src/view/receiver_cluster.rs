@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use crate::base::{Error, number_in};
 use crate::lobe::LobeFamily;
-use crate::num::{UNIT_ROUNDOFF, round_up, sqrt};
+use crate::num::{Real, UNIT_ROUNDOFF, round_up, sqrt};
 
 /// Budget for the radius of a ball, beside that of its centre.
 const RADIUS_ROUNDINGS: u16 = 8;
@@ -44,18 +44,25 @@ impl<F: LobeFamily> ReceiverCluster<F> {
         let (first, family) = receivers.clone().next()?;
         let (mut min, mut max, mut len) = (first, first, 1_u32);
         let mut sum = family.to_sum();
-        for (position, family) in receivers.clone().skip(1) {
-            (min, max) = (min.min(position), max.max(position));
-            family.add_to(&mut sum);
-            len = len.saturating_add(1);
-        }
+        // The iterator runs its own loops, which is faster for rows of pixels.
+        receivers.clone().skip(1).for_each(
+            #[inline(always)]
+            |(position, family)| {
+                (min, max) = (min.min(position), max.max(position));
+                family.add_to(&mut sum);
+                len = len.saturating_add(1);
+            },
+        );
         let center = min.midpoint(max);
         let mut family = F::mean(&sum);
         let mut squared = 0.0_f32;
-        for (position, member) in receivers {
-            squared = squared.max(center.distance_squared(position));
-            family.widen(&member);
-        }
+        receivers.for_each(
+            #[inline(always)]
+            |(position, member)| {
+                squared = Real::max(center.distance_squared(position), squared);
+                family.widen(&member);
+            },
+        );
         Some(Self {
             center,
             // Infinite where a square overflows.

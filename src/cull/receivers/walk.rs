@@ -224,13 +224,12 @@ impl<L: Lobe, F: LobeFamily, R: Rule> Scene<'_, L, F, R> {
             indices[..step.len()].copy_from_slice(step);
             let filled = mask_of_first::<S>(simd, step.len());
             let gathered = Lights::gathered(simd, self.lights, &indices);
-            let light = LitFrom {
-                position: gathered.position,
-                flux: gathered.flux,
-                numbers: &gathered.numbers,
-                lobe_of: |lane: usize| self.lights.lobes.get(indices[lane] as usize),
-            };
-            let indices = S::u32s::from_slice(simd, &indices[..S::u32s::LEN]);
+            let light = lit_from(
+                &gathered,
+                #[inline(always)]
+                |lane| self.lights.lobes.get(indices[lane] as usize),
+            );
+            let vector = S::u32s::from_slice(simd, &indices[..S::u32s::LEN]);
             for (piece, node) in nodes.iter().enumerate() {
                 let radiance = if BY_PARTS {
                     self.radiance(self.tiles.undivided(*node), &light)
@@ -245,7 +244,7 @@ impl<L: Lobe, F: LobeFamily, R: Rule> Scene<'_, L, F, R> {
                     compress::<S>(weight, chosen)
                         .store_slice(&mut weights[first..][..S::f32s::LEN]);
                 }
-                lens[piece] += write_chosen::<S>(indices, chosen, &mut out[first..]);
+                lens[piece] += write_chosen::<S>(vector, chosen, &mut out[first..]);
             }
         }
     }
@@ -282,5 +281,16 @@ impl<N: Single> TileRadiance<N> {
             greatest: like.zero(),
             mean_square: like.zero(),
         }
+    }
+}
+
+/// The lights of all lanes, with their lobes.
+#[inline(always)]
+fn lit_from<N: Single, O>(lights: &Lights<N>, lobe_of: O) -> LitFrom<'_, N, O> {
+    LitFrom {
+        position: lights.position,
+        flux: lights.flux,
+        numbers: &lights.numbers,
+        lobe_of,
     }
 }
