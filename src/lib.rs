@@ -349,8 +349,8 @@ pub use interop::{
     GpuSphere, GpuTile,
 };
 pub use light::{
-    ClusterSums, DistanceWindow, FilteredSample, FilteredSampling, FrameSeed, MipPyramid, Roulette,
-    Seed, TileProbability, Vpl, Vsgl, Xi, pyramid_len, rank_along_curve,
+    ClusterSums, DistanceWindow, EvenNoise, FilteredSample, FilteredSampling, FrameSeed,
+    MipPyramid, Roulette, Seed, TileProbability, Vpl, Vsgl, Xi, pyramid_len, rank_along_curve,
 };
 pub use lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, AnisotropicSphericalGaussian, Blind, Cap, Conductor,

@@ -7,10 +7,10 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, AnyCamera, Camera, Conductor, ConstantLobe, CullCounters,
-    DepthInterval, Dielectric, Direction, DistanceWindow, Error, FresnelMajorant, Ggx, GgxLobe,
-    HeightCorrelated, Incidence, Interleave, LambertLobe, NoFresnel, Orthographic, PhongLobe,
-    PixelRectangle, Proxy, Roulette, Schlick, Seed, Separable, SphericalGaussian, SpotLobe,
-    TileGrid, TileRectangle, Vpl, Xi,
+    DepthInterval, Dielectric, Direction, DistanceWindow, Error, EvenNoise, FresnelMajorant, Ggx,
+    GgxLobe, HeightCorrelated, Incidence, Interleave, LambertLobe, NoFresnel, Orthographic,
+    PhongLobe, PixelRectangle, Proxy, Roulette, Schlick, Seed, Separable, SphericalGaussian,
+    SpotLobe, TileGrid, TileRectangle, Vpl, Xi,
     glam::{Vec2, Vec3},
 };
 use support::generators::{self, cases, log_uniform, up_to_one};
@@ -132,6 +132,8 @@ fn lobes_and_lights_are_saved_with_what_they_are_made_of() -> Result<(), Error> 
     );
     let lamp = json!({ "inner_angle": 0.25, "outer_angle": 2.0, "axis": up });
     assert_saved(&SpotLobe::new(0.25, 2.0, normal)?, lamp);
+    let even = EvenNoise::new(2.0)?.with_range(0.25, 16.0)?;
+    assert_saved(&even, json!({ "typical": 2.0, "range": [0.25, 16.0] }));
     assert_saved(&DistanceWindow::new(20.0)?, json!({ "radius": 20.0 }));
     let spot = json!({ "albedo": 0.5, "exponent": 40.0, "normal": up, "incoming": null });
     assert_saved(&PhongLobe::about(0.5, 40.0, normal)?, spot);

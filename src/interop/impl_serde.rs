@@ -6,7 +6,7 @@ use glam::{Mat3, Vec3};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 use crate::base::{Direction, Error};
-use crate::light::{DistanceWindow, Roulette, Vpl, Xi};
+use crate::light::{DistanceWindow, EvenNoise, Roulette, Vpl, Xi};
 use crate::lobe::{
     AnisotropicGgx, AnisotropicGgxLobe, Conductor, Dielectric, Fresnel, Ggx, GgxLobe, Incidence,
     LambertLobe, Lobe, PhongLobe, Schlick, SphericalGaussian, SpotLobe,
@@ -82,6 +82,8 @@ saved! {
         axis: Direction = lobe.axis()
     } => SpotLobe::new(inner_angle, outer_angle, axis);
     |window| DistanceWindow { radius: f32 = window.radius() } => DistanceWindow::new(radius);
+    |even| EvenNoise { typical: f32 = even.typical(), range: [f32; 2] = even.range() } =>
+        EvenNoise::new(typical).and_then(|even| even.with_range(range[0], range[1]));
     |roulette| Roulette { delta: f32 = roulette.delta() } => Roulette::new(delta);
     |schlick| Schlick { f0: f32 = schlick.f0() } => Schlick::new(f0);
     |lobe| SphericalGaussian {

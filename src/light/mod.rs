@@ -2,6 +2,7 @@
 
 mod cluster;
 mod curve;
+mod even_noise;
 mod map;
 mod pyramid;
 mod roulette;
@@ -13,6 +14,7 @@ mod xi;
 
 pub use cluster::ClusterSums;
 pub use curve::rank_along_curve;
+pub use even_noise::EvenNoise;
 pub use map::{FilteredSample, FilteredSampling};
 pub use pyramid::{MipPyramid, pyramid_len};
 pub use roulette::Roulette;

@@ -66,6 +66,33 @@ impl<F: LobeFamily> ReceiverCluster<F> {
         roulette: &Roulette,
         least_distance_squared: f32,
     ) -> f32 {
+        self.of_light(light, roulette, least_distance_squared)
+            .greatest
+    }
+
+    /// An estimate of c/δ: of the radiance that a receiver of the cluster reflects to the eye of `light`, in units of
+    /// its δ. At most [`greatest_radiance`](Self::greatest_radiance), and positive where that is, but where it
+    /// underflows.
+    ///
+    /// The sum over all lights, times δ, is about the radiance of a receiver. It depends on no ξ, so a δ may follow
+    /// from it: see [`EvenNoise`](crate::EvenNoise).
+    #[must_use]
+    pub fn typical_radiance<L: Lobe>(
+        &self,
+        light: &Vpl<L>,
+        roulette: &Roulette,
+        least_distance_squared: f32,
+    ) -> f32 {
+        self.of_light(light, roulette, least_distance_squared)
+            .typical
+    }
+
+    fn of_light<L: Lobe>(
+        &self,
+        light: &Vpl<L>,
+        roulette: &Roulette,
+        least_distance_squared: f32,
+    ) -> Majorant<f32> {
         let light = LitFrom {
             position: light.position().into(),
             flux: light.flux(),
@@ -73,7 +100,6 @@ impl<F: LobeFamily> ReceiverCluster<F> {
             lobe_of: |_| Some(light.lobe()),
         };
         self.radiance_over_delta(&light, roulette, least_distance_squared)
-            .greatest
     }
 
     /// The bound of c/δ, and an estimate of it, for the light in each lane.

@@ -4,8 +4,8 @@ use std::hint::black_box;
 
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicSphericalGaussian, AnyCamera, Bounded, ClusterSums, ConstantLobe,
-    DepthInterval, DistanceWindow, FilteredSampling, Fresnel, FresnelMajorant, Ggx, GgxLobe,
-    Incidence, LambertLobe, Lobe, MipPyramid, NoFresnel, Paper, PhongLobe, Proxy,
+    DepthInterval, DistanceWindow, EvenNoise, FilteredSampling, Fresnel, FresnelMajorant, Ggx,
+    GgxLobe, Incidence, LambertLobe, Lobe, MipPyramid, NoFresnel, Paper, PhongLobe, Proxy,
     RadianceEstimator, Roulette, Seed, ShadedPoint, ShadingBatch, SphericalGaussian, SpotLobe,
     Tight, TileRectangle, Triaxial, Vpl, Vsgl, Xi, glam::Vec3,
 };
@@ -50,6 +50,12 @@ pub fn others(bits: &mut Bits, cameras: &[AnyCamera]) {
             let scale = bits.number();
             assert!((0.0..=1.0).contains(&window.factor(bits.number().abs())));
             assert!(scale.is_nan() || window.limit(SpotLobe::PEAK, scale) <= scale);
+        }
+        let even = EvenNoise::new(bits.number());
+        if let Ok(even) = even.and_then(|even| even.with_range(bits.number(), bits.number())) {
+            probe::saved(&even);
+            let (scale, [least, most]) = (even.delta_scale(bits.number()), even.range());
+            assert!(least <= scale && scale <= most, "{scale}");
         }
         let _ = (Vpl::point(bits.vector(), bits.number()), bits.number());
     }

@@ -17,7 +17,7 @@ fn roughness(rng: &mut Rng, least: f32) -> Ggx {
     Ggx::new(10_f32.powf(exponent).clamp(least, 1.0)).expect("in range")
 }
 
-fn glossy_light(rng: &mut Rng) -> GgxLobe<Schlick> {
+pub fn glossy_light(rng: &mut Rng) -> GgxLobe<Schlick> {
     let incidence = Incidence {
         normal: direction(rng),
         incoming: direction(rng),

@@ -4,3 +4,4 @@
 mod case;
 mod lists;
 mod scene;
+mod unbiased;

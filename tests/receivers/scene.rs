@@ -32,9 +32,14 @@ pub fn direction(rng: &mut Rng) -> Direction {
 }
 
 impl Surfaces {
-    /// A floor with waves, and in front of it some balls.
+    /// An image of any size.
     pub fn new(rng: &mut Rng, tile_size: u32) -> Self {
         let size = [1 + rng.u32(..40), 1 + rng.u32(..24)];
+        Self::of_size(rng, size, tile_size)
+    }
+
+    /// A floor with waves, and in front of it some balls.
+    pub fn of_size(rng: &mut Rng, size: [u32; 2], tile_size: u32) -> Self {
         let grid = TileGrid::new(size, tile_size).expect("positive");
         let wave = 0.5 * rng.f32();
         let holes = if rng.bool() { 0.1 } else { 0.0 };
