@@ -41,6 +41,10 @@ pub(super) fn anisotropic_value<N: Single, G: MaskingShadowing>(
 /// The majorant of [`anisotropic_value`] within a cap.
 ///
 /// The root √(α_x²x² + α_y²y² + z²) is least where each coordinate is.
+#[expect(
+    clippy::redundant_closure,
+    reason = "a reference to a closure is called, not inlined"
+)]
 #[inline(always)]
 pub(super) fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
     at_any_azimuth: &GgxLobes<N>,

@@ -217,6 +217,10 @@ impl<N: Single> GgxLobes<N> {
     }
 
     /// The majorant within a cap, where `reflectance` is F as a function of cosθ_h.
+    #[expect(
+        clippy::redundant_closure,
+        reason = "a reference to a closure is called, not inlined"
+    )]
     #[inline(always)]
     pub fn majorant<G: MaskingShadowing>(
         &self,
