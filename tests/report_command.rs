@@ -138,6 +138,7 @@ fn check_every_study(scene: &str) {
             "spread",
             "tests",
             "tightness",
+            "tile_borders",
             "vpl_count",
             "vsgl"
         ]

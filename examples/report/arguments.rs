@@ -50,6 +50,8 @@ pub enum StudyKind {
     Receivers,
     /// Error of the mean of 1 to 64 frames, by how the ξ of lights and frames go together
     Spread,
+    /// One decision for all pixels of a tile: what is seen of the tiles' borders
+    TileBorders,
     /// Transformed cosines in the place of GGX: error of the lobes and of pictures, and milliseconds
     Ltsd,
     /// Smooth lights in the place of points: error against time, and change under a moving light

@@ -9,6 +9,7 @@ mod receivers;
 mod spread;
 mod tests;
 mod tightness;
+mod tile_borders;
 mod vpl_count;
 mod vsgl;
 
@@ -45,6 +46,7 @@ pub fn make(kind: StudyKind, subjects: &[Subject], done: &dyn Fn()) -> Vec<Study
         StudyKind::Interleaving => interleaving::make(subjects, done),
         StudyKind::Receivers => receivers::make(subjects, done),
         StudyKind::Spread => spread::make(subjects, done),
+        StudyKind::TileBorders => tile_borders::make(subjects, done),
         StudyKind::Vsgl => vsgl::make(subjects, done),
         StudyKind::Ltsd => return ltsd::make(subjects, done),
     };
