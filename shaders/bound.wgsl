@@ -15,7 +15,7 @@ struct SlcBound {
 
 /// Pays for the rounding of axes and centre, in units of the longest over the shortest semi-axis.
 const SLC_TILT_ULPS: f32 = 64.0;
-/// Pays for the rounding of a spheroid's semi-axes, and of a sphere's radius.
+/// Pays for the rounding of the semi-axes of an ellipsoid of revolution, and of a sphere's radius.
 const SLC_SEMI_AXIS_ULPS: f32 = 128.0;
 /// Pays for the rounding of the cosine of the largest half angle.
 const SLC_SMALLEST_COSINE_ULPS: f32 = 64.0;
@@ -50,6 +50,20 @@ fn slc_paper_constant() -> SlcBound {
     return slc_sphere(vec3f(0.0), 0.28209479);
 }
 
+/// An ellipsoid of revolution, for a lobe that extends by `reach` along its `axis`: the distance of its centre from the
+/// light, its semi-axis along the axis and those across it are in units of that.
+fn slc_revolved(axis: vec3f, center: f32, along: f32, across: f32, reach: f32) -> SlcBound {
+    let side = slc_any_orthogonal(axis);
+    let ratio = max(along, across) / min(along, across);
+    let grown = slc_round_up(reach * (1.0 + ratio * (SLC_TILT_ULPS * SLC_ULP)), SLC_SEMI_AXIS_ULPS);
+    return SlcBound(
+        vec3f(0.0),
+        axis * (center * reach),
+        mat3x3f(axis, cross(side, axis), side),
+        vec3f(along, across, across) * grown,
+    );
+}
+
 /// The smallest sphere around Lambert's lobe. Its centre is (1/3)^¾ R above the light, and its radius is
 /// (4/27)^¼ R, with R² = ρ/π [Tokuyoshi & Harada 2017, Sec. 6].
 fn slc_paper_lambert(albedo: f32, normal: vec3f) -> SlcBound {
@@ -67,8 +81,13 @@ struct SlcPlaneOfIncidence {
     sine: f32,
 }
 
+/// ω_u = 2μn − ω_i
+fn slc_mirror_direction(light: SlcLight) -> vec3f {
+    return light.normal * (2.0 * light.cosine) - light.incoming;
+}
+
 fn slc_plane_of_incidence(light: SlcLight) -> SlcPlaneOfIncidence {
-    let mirror = light.normal * (2.0 * light.cosine) - light.incoming;
+    let mirror = slc_mirror_direction(light);
     let product = cross(light.normal, light.incoming);
     let sine = length(product);
     if sine < SLC_LEAST_SINE {
@@ -125,21 +144,10 @@ fn slc_paper_ggx(light: SlcLight, max_fresnel: f32) -> SlcBound {
     if light.cosine <= 0.0 {
         return slc_empty_bound();
     }
-    let plane = slc_plane_of_incidence(light);
     let radius = sqrt(max_fresnel * slc_masking_over_four_cosines(light) * SLC_FRAC_1_PI);
     let alpha = light.roughness;
-    // Semi-axes and distance of the centre, in units of r.
+    // Semi-axis and distance of the centre, in units of r.
     let long = (1.0 + alpha * alpha) / (2.0 * alpha);
     let distance = (1.0 - alpha) * (1.0 + alpha) / (2.0 * alpha);
-    let semi_axes = vec3f(long, 1.0, 1.0) * radius * (1.0 + long * (SLC_TILT_ULPS * SLC_ULP));
-    return SlcBound(
-        vec3f(0.0),
-        plane.mirror * (distance * radius),
-        mat3x3f(plane.mirror, cross(plane.mirror, plane.across), -plane.across),
-        vec3f(
-            slc_round_up(semi_axes.x, SLC_SEMI_AXIS_ULPS),
-            slc_round_up(semi_axes.y, SLC_SEMI_AXIS_ULPS),
-            slc_round_up(semi_axes.z, SLC_SEMI_AXIS_ULPS),
-        ),
-    );
+    return slc_revolved(slc_mirror_direction(light), distance, long, 1.0, radius);
 }

@@ -38,6 +38,8 @@ impl Kind {
     const SCHLICK: Self = Self(3);
     const DIELECTRIC: Self = Self(4);
     const CONDUCTOR: Self = Self(5);
+    const SPOT: Self = Self(6);
+    const GAUSSIAN: Self = Self(7);
 }
 
 /// Writes a bit for each bound that touches the tile: the paper's, and the tight one.
@@ -64,6 +66,14 @@ fn bounds(case_: Case) -> array<SlcBound, 2> {
         case 3u: { most = slc_max_schlick(light); }
         case 4u: { most = slc_max_dielectric(light); }
         case 5u: { most = slc_max_conductor(light); }
+        case 6u: {
+            let bound = slc_tight_spot(light.normal, light.fresnel);
+            return array<SlcBound, 2>(bound, bound);
+        }
+        case 7u: {
+            let bound = slc_tight_gaussian(light.normal, light.fresnel.x, light.fresnel.y);
+            return array<SlcBound, 2>(bound, bound);
+        }
         default: {}
     }
     return array<SlcBound, 2>(slc_paper_ggx(light, most), slc_tight_ggx(light, most));
@@ -89,6 +99,8 @@ fn functions(share: f32) -> String {
         wgsl::LIGHT,
         wgsl::BOUND,
         wgsl::TIGHT,
+        wgsl::SPOT,
+        wgsl::GAUSSIAN,
         wgsl::PROJECT,
         wgsl::TOUCH,
     ]
@@ -117,6 +129,11 @@ fn record(light: &Light) -> Option<(GpuLight, Kind)> {
         incoming: light.incoming,
     };
     Some(match light.brdf {
+        Brdf::Spot { versines, .. } => (about(light, versines), Kind::SPOT),
+        Brdf::SphericalGaussian {
+            amplitude,
+            sharpness,
+        } => (about(light, [sharpness, amplitude]), Kind::GAUSSIAN),
         Brdf::Constant => (record_of(light, ConstantLobe), Kind::CONSTANT),
         Brdf::Lambert { albedo } => {
             let lobe = LambertLobe::new(albedo, light.normal).unwrap();
@@ -160,6 +177,17 @@ fn record(light: &Light) -> Option<(GpuLight, Kind)> {
     })
 }
 
+/// The record of a light about an axis, with the parameters of its lobe in the place of those of a Fresnel factor.
+fn about(light: &Light, parameters: [f32; 2]) -> GpuLight {
+    GpuLight {
+        position: light.position.to_array(),
+        flux: light.flux,
+        normal: light.normal.to_array(),
+        fresnel: parameters,
+        ..GpuLight::zeroed()
+    }
+}
+
 /// Draws about `count` cases with this seed.
 fn draw(seed: u64, count: usize) -> Vec<(Light, Tile, Case)> {
     let mut rng = Rng::with_seed(seed);
@@ -199,6 +227,7 @@ fn touched(gpu: &Gpu, kernel: &Kernel, cases: &[Case]) -> Vec<u32> {
     gpu.run(&[Dispatch {
         kernel,
         buffers: &[(0, &table), (1, &buffers.0), (2, &buffers.1)],
+        own: &[],
         workgroups: [cases.len().div_ceil(64) as u32, 1, 1],
     }])
     .unwrap();

@@ -50,6 +50,12 @@ pub const BOUND: &str = include_str!("../../shaders/bound.wgsl");
 /// The [tight](crate::Tight) bound. Needs [`NUM`], [`LOBE`] and [`BOUND`], and a variable that the caller declares,
 /// with the contents of [`TABLE`]: `var<storage, read> slc_table: array<vec4f>;`.
 pub const TIGHT: &str = include_str!("../../shaders/tight.wgsl");
+/// The lobe of a spot light, and its bound. Needs [`NUM`], [`LOBE`] and [`BOUND`].
+pub const SPOT: &str = include_str!("../../shaders/spot.wgsl");
+/// A spherical Gaussian, and its bound. Needs [`NUM`], [`LOBE`] and [`BOUND`].
+pub const GAUSSIAN: &str = include_str!("../../shaders/gaussian.wgsl");
+/// An anisotropic GGX lobe. Needs [`NUM`] and [`LOBE`].
+pub const ANISOTROPIC: &str = include_str!("../../shaders/anisotropic.wgsl");
 /// Bounds in the space of a camera. Needs [`NUM`], [`LOBE`] and [`BOUND`].
 pub const PROJECT: &str = include_str!("../../shaders/project.wgsl");
 /// The test of a projected bound against a tile. Needs what [`PROJECT`] needs, and that.
@@ -58,10 +64,10 @@ pub const TOUCH: &str = include_str!("../../shaders/touch.wgsl");
 pub const VIEW: &str = include_str!("../../shaders/view.wgsl");
 
 /// What the kernels of a frame share: the record of a frame, ξ of its lights, and depths. Needs the texts above but
-/// [`TIGHT`] and [`TOUCH`].
+/// [`TIGHT`], [`TOUCH`] and those of single lobes.
 pub const FRAME: &str = include_str!("../../shaders/frame.wgsl");
 
-/// The texts above but [`TIGHT`], joined.
+/// The texts above, joined, but [`TIGHT`], [`SPOT`], [`GAUSSIAN`] and [`ANISOTROPIC`].
 pub const FUNCTIONS: &str = concat!(
     include_str!("../../shaders/num.wgsl"),
     include_str!("../../shaders/lobe.wgsl"),

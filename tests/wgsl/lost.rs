@@ -7,7 +7,9 @@ use bytemuck::{Pod, bytes_of};
 use fastrand::Rng;
 use naga::{Handle, Module, ScalarKind, Type, TypeInner};
 use rayon::prelude::*;
-use stochastic_light_culling::wgsl::{BOUND, LIGHT, LOBE, NUM, PROJECT, TABLE, TIGHT, TOUCH};
+use stochastic_light_culling::wgsl::{
+    BOUND, GAUSSIAN, LIGHT, LOBE, NUM, PROJECT, SPOT, TABLE, TIGHT, TOUCH,
+};
 use stochastic_light_culling::{
     Conductor, ConstantLobe, Dielectric, Ellipsoid, Ggx, GgxLobe, GpuCamera, GpuLight, Incidence,
     LambertLobe, Lobe, NoFresnel, Schlick, Vpl,
@@ -62,7 +64,10 @@ fn draw(rng: &mut Rng, least_roughness: f64) -> Light {
     loop {
         let light = Light::draw(rng);
         match light.brdf {
-            Brdf::Lambert { .. } | Brdf::Constant => return light,
+            Brdf::Lambert { .. }
+            | Brdf::Constant
+            | Brdf::Spot { .. }
+            | Brdf::SphericalGaussian { .. } => return light,
             Brdf::Ggx {
                 roughness,
                 masking: Masking::HeightCorrelated | Masking::Separable,
@@ -121,6 +126,7 @@ fn gpu_light(light: &Light) -> GpuLight {
 /// The bounds of a light that the shaders know, placed, by name.
 fn bounds(machine: &mut Machine, light: &Light) -> Vec<(&'static str, Value)> {
     let lit = record(machine.module, "SlcLight", &gpu_light(light));
+    let axis = Value::from(light.normal.to_array());
     let unit = match light.brdf {
         Brdf::Ggx { fresnel, .. } => {
             let name = match fresnel {
@@ -136,16 +142,27 @@ fn bounds(machine: &mut Machine, light: &Light) -> Vec<(&'static str, Value)> {
                 .to_vec()
         }
         Brdf::Lambert { albedo } => {
-            let normal = light.normal.to_array().into();
+            let name = "slc_paper_lambert";
+            vec![(name, machine.call(name, &[albedo.into(), axis]))]
+        }
+        Brdf::Spot { versines, .. } => {
+            let name = "slc_tight_spot";
+            vec![(name, machine.call(name, &[axis, versines.into()]))]
+        }
+        Brdf::SphericalGaussian {
+            amplitude,
+            sharpness,
+        } => {
+            let name = "slc_tight_gaussian";
             vec![(
-                "slc_paper_lambert",
-                machine.call("slc_paper_lambert", &[albedo.into(), normal]),
+                name,
+                machine.call(name, &[axis, sharpness.into(), amplitude.into()]),
             )]
         }
-        _ => vec![(
-            "slc_paper_constant",
-            machine.call("slc_paper_constant", &[]),
-        )],
+        _ => {
+            let name = "slc_paper_constant";
+            vec![(name, machine.call(name, &[]))]
+        }
     };
     let frame = [light.flux, light.delta, light.xi].map(Value::F32);
     let scale = machine.call("slc_scale", &frame);
@@ -179,7 +196,10 @@ fn touched(machine: &mut Machine, bounds: &[(&'static str, Value)], tile: &Tile)
 
 /// The shaders with all margins times `share`.
 fn shaders(share: f32) -> Module {
-    let texts = [DECLARED, NUM, LOBE, LIGHT, BOUND, TIGHT, PROJECT, TOUCH].concat();
+    let texts = [
+        DECLARED, NUM, LOBE, LIGHT, BOUND, TIGHT, SPOT, GAUSSIAN, PROJECT, TOUCH,
+    ]
+    .concat();
     let line = |line: &str| match line.split_once("_ULPS: f32 = ") {
         Some((name, value)) => {
             let ulps: f32 = value.trim_end_matches(';').parse().expect("a number");
@@ -213,6 +233,7 @@ fn that_keep_on_the_cpu(light: &Light, tile: &Tile) -> Vec<bool> {
             .is_some_and(|shape| shape.touches_exactly(&tile.rectangle, &tile.depths))
     };
     match light.bound() {
+        Bound::Spot(tight) | Bound::SphericalGaussian { tight, .. } => vec![ellipsoid(tight)],
         Bound::Ggx {
             spheroid, tight, ..
         } => vec![ellipsoid(spheroid.into()), ellipsoid(tight)],

@@ -3,7 +3,7 @@
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, front::wgsl};
 use stochastic_light_culling::wgsl::{
-    BOUND, FRAME, LIGHT, LOBE, NUM, PROJECT, TABLE, TIGHT, TOUCH, VIEW,
+    ANISOTROPIC, BOUND, FRAME, GAUSSIAN, LIGHT, LOBE, NUM, PROJECT, SPOT, TABLE, TIGHT, TOUCH, VIEW,
 };
 
 /// What the caller of the tight bound declares.
@@ -31,12 +31,27 @@ fn each_text_is_valid_with_those_that_it_names() {
     module(&[DECLARED, TIGHT, BOUND, LOBE, NUM]);
     module(&[PROJECT, BOUND, LOBE, NUM]);
     module(&[TOUCH, PROJECT, BOUND, LOBE, NUM]);
+    module(&[SPOT, BOUND, LOBE, NUM]);
+    module(&[GAUSSIAN, BOUND, LOBE, NUM]);
+    module(&[ANISOTROPIC, LOBE, NUM]);
     module(&[VIEW]);
 }
 
 #[test]
 fn all_names_have_the_prefix_and_nothing_is_bound() {
-    let texts = [NUM, LOBE, LIGHT, BOUND, TIGHT, PROJECT, TOUCH, VIEW];
+    let texts = [
+        NUM,
+        LOBE,
+        LIGHT,
+        BOUND,
+        TIGHT,
+        SPOT,
+        GAUSSIAN,
+        ANISOTROPIC,
+        PROJECT,
+        TOUCH,
+        VIEW,
+    ];
     let module = module(&[&[DECLARED], &texts[..]].concat());
     let functions = module.functions.iter().map(|(_, function)| &function.name);
     for name in functions.flatten() {
@@ -71,6 +86,7 @@ fn budgets_are_those_that_are_counted() {
         ("light.wgsl", LIGHT),
         ("bound.wgsl", BOUND),
         ("tight.wgsl", TIGHT),
+        ("gaussian.wgsl", GAUSSIAN),
         ("project.wgsl", PROJECT),
         ("frame.wgsl", FRAME),
     ];
@@ -94,7 +110,21 @@ fn budgets_are_those_that_are_counted() {
         );
         counted += 1;
     }
-    let texts = [NUM, LOBE, LIGHT, BOUND, TIGHT, PROJECT, TOUCH, VIEW, FRAME].concat();
+    let texts = [
+        NUM,
+        LOBE,
+        LIGHT,
+        BOUND,
+        TIGHT,
+        SPOT,
+        GAUSSIAN,
+        ANISOTROPIC,
+        PROJECT,
+        TOUCH,
+        VIEW,
+        FRAME,
+    ]
+    .concat();
     assert_eq!(texts.matches("_ULPS: f32 = ").count(), counted);
 }
 
