@@ -3,10 +3,10 @@
 
 use gpu::{Caller, Frame, Gpu, Map, Method};
 use stochastic_light_culling::{
-    Camera, Culler, GpuBound, GpuBuffer, GpuFrame, GpuProjected, Interleave, LightBatch,
-    LightLists, Roulette, wgsl,
+    Camera, Culler, DepthInterval, GpuBound, GpuBuffer, GpuFrame, GpuProjected, Interleave,
+    LightBatch, LightLists, Roulette, TileDepths, wgsl,
 };
-use support::workload::{self, Depths, LIGHTS, SUBREGIONS, Subregion, TILES, halves};
+use support::workload::{self, Depths, LIGHTS, SUBREGIONS, Subregion, TILES, Tile, halves};
 
 /// Projects a bound on the GPU.
 const PROJECT: Map = Map {
@@ -26,6 +26,9 @@ struct Bounded {
     camera: stochastic_light_culling::GpuCamera,
 }
 
+/// The depth intervals of a tile.
+type Parts = dyn Fn(&Tile) -> Vec<DepthInterval>;
+
 /// The frame of the workloads on the GPU.
 struct Workload<'a> {
     frame: Frame<'a>,
@@ -33,12 +36,13 @@ struct Workload<'a> {
 }
 
 impl<'a> Workload<'a> {
-    fn new(gpu: &'a Gpu, subregions: &[Subregion]) -> Self {
+    fn new(gpu: &'a Gpu, subregions: &[Subregion], intervals: u32) -> Self {
         let camera = workload::camera();
         let interleave = Interleave::new([1920, 1080], 8).unwrap();
         let lights = (SUBREGIONS * LIGHTS) as u32;
         let roulette = Roulette::new(1.0).unwrap();
         let record = GpuFrame::new(&camera, &interleave, &roulette, lights).unwrap();
+        let record = record.with_lists(intervals, record.room).unwrap();
         let unlit = vec![bytemuck::Zeroable::zeroed(); lights as usize];
         let mut frame = Frame::new(gpu, record, &unlit, (&camera, &interleave)).unwrap();
         let projected = projected(gpu, &camera, subregions);
@@ -55,9 +59,9 @@ impl<'a> Workload<'a> {
     }
 
     /// The lists of each interval of each tile, in the order of subregions, tiles and intervals.
-    fn lists(&mut self, gpu: &Gpu, subregions: &[Subregion], depths: Depths) -> Vec<Vec<u32>> {
+    fn lists(&mut self, gpu: &Gpu, subregions: &[Subregion], parts: &Parts) -> Vec<Vec<u32>> {
         let tiles = subregions.iter().flat_map(|subregion| &subregion.tiles);
-        let intervals = tiles.flat_map(|tile| halves(depths(tile)));
+        let intervals = tiles.flat_map(parts);
         let intervals: Vec<[f32; 2]> = intervals.map(|d| [d.near(), d.far()]).collect();
         self.frame
             .replace(GpuBuffer::Intervals, &intervals)
@@ -110,7 +114,7 @@ fn edges(subregions: &[Subregion]) -> Vec<[f32; 2]> {
 }
 
 /// The lists of the crate, with or without the exact test.
-fn lists_of_cpu(subregions: &[Subregion], depths: Depths, exactly: bool) -> Vec<Vec<u32>> {
+fn lists_of_cpu(subregions: &[Subregion], parts: &Parts, exactly: bool) -> Vec<Vec<u32>> {
     let camera = workload::camera();
     let mut culler = Culler::new();
     if exactly {
@@ -122,14 +126,21 @@ fn lists_of_cpu(subregions: &[Subregion], depths: Depths, exactly: bool) -> Vec<
         let stretches = subregion.lights.iter().map(|light| light.stretch(&camera));
         batch.extend((0..).map(|i| 64 * i + s).zip(stretches));
         let mut lists = LightLists::new();
-        culler
-            .cull(&batch, &subregion.tile_depths(depths), &mut lists)
-            .unwrap();
-        for y in 0..TILES[1] {
-            for x in 0..TILES[0] {
-                found.extend([0, 1].map(|interval| lists.of([x, y], interval).to_vec()));
-            }
+        let at = |[x, y]: [u32; 2]| &subregion.tiles[(y * TILES[0] + x) as usize];
+        let count = parts(at([0, 0])).len() as u32;
+        let mut depths =
+            TileDepths::from_rectangles(TILES, count, |tile| at(tile).rectangle()).unwrap();
+        let tiles = (0..TILES[1]).flat_map(|y| (0..TILES[0]).map(move |x| [x, y]));
+        for tile in tiles.clone() {
+            depths.set(tile, parts(at(tile)));
         }
+        culler.cull(&batch, &depths, &mut lists).unwrap();
+        let of_tile = |tile| (0..count).map(move |interval| (tile, interval));
+        found.extend(
+            tiles
+                .flat_map(of_tile)
+                .map(|(tile, k)| lists.of(tile, k).to_vec()),
+        );
     }
     found
 }
@@ -138,18 +149,30 @@ fn pairs(lists: &[Vec<u32>]) -> usize {
     lists.iter().map(Vec::len).sum()
 }
 
+/// How many lights of the exact test are not listed.
+fn lost(exact: &[Vec<u32>], lists: &[Vec<u32>]) -> usize {
+    let of_tile = |(exact, listed): (&Vec<u32>, &Vec<u32>)| {
+        exact
+            .iter()
+            .filter(|light| listed.binary_search(light).is_err())
+            .count()
+    };
+    exact.iter().zip(lists).map(of_tile).sum()
+}
+
 #[test]
 fn lists_hold_all_lights_of_the_exact_test_and_hardly_more_than_those_of_the_crate() {
     let gpu = Gpu::new().unwrap();
     let subregions = workload::frame();
-    let mut workload = Workload::new(&gpu, &subregions);
+    let mut workload = Workload::new(&gpu, &subregions, 2);
     // What the box test with bounds finds in `f64`, in near intervals and in far ones.
     let kinds: [(Depths, [usize; 2]); 2] = [
         (|tile| tile.scattered, [16_251, 28_337]),
         (|tile| tile.coherent, [2_282, 3_039]),
     ];
     for (depths, known) in kinds {
-        let lists = workload.lists(&gpu, &subregions, depths);
+        let parts = move |tile: &Tile| halves(depths(tile)).to_vec();
+        let lists = workload.lists(&gpu, &subregions, &parts);
         for (part, known) in known.into_iter().enumerate() {
             let found: usize = lists.iter().skip(part).step_by(2).map(Vec::len).sum();
             println!("{found} lights, known {known}");
@@ -158,19 +181,38 @@ fn lists_hold_all_lights_of_the_exact_test_and_hardly_more_than_those_of_the_cra
                 "{found}, known {known}"
             );
         }
-        let exact = lists_of_cpu(&subregions, depths, true);
-        let lost = exact.iter().zip(&lists).flat_map(|(exact, listed)| {
-            exact
-                .iter()
-                .filter(|light| listed.binary_search(light).is_err())
-        });
-        assert_eq!(lost.count(), 0);
-        let boxes = lists_of_cpu(&subregions, depths, false);
+        let exact = lists_of_cpu(&subregions, &parts, true);
+        assert_eq!(lost(&exact, &lists), 0);
+        let boxes = lists_of_cpu(&subregions, &parts, false);
         assert!(pairs(&lists) <= pairs(&boxes) + pairs(&boxes) / 200);
         println!(
             "{} by the box test of the crate, {} by its exact test",
             pairs(&boxes),
             pairs(&exact)
         );
+    }
+}
+
+/// As clustered shading has them.
+#[test]
+fn a_tile_may_have_any_number_of_intervals() {
+    let gpu = Gpu::new().unwrap();
+    let subregions = workload::frame();
+    for count in [1, 9] {
+        let parts = move |tile: &Tile| -> Vec<DepthInterval> {
+            let [near, far] = tile.coherent.map(|depth| depth as f32);
+            let whole = DepthInterval::new(near, far).unwrap();
+            whole.exponential_slices(count).collect()
+        };
+        let lists = Workload::new(&gpu, &subregions, count).lists(&gpu, &subregions, &parts);
+        let exact = lists_of_cpu(&subregions, &parts, true);
+        assert_eq!(lists.len(), exact.len());
+        assert_eq!(lost(&exact, &lists), 0);
+        let (found, boxes) = (
+            pairs(&lists),
+            pairs(&lists_of_cpu(&subregions, &parts, false)),
+        );
+        println!("{count} intervals: {found} lights, {boxes} by the crate");
+        assert!(found <= boxes + boxes / 100);
     }
 }
