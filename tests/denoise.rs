@@ -16,6 +16,7 @@ fn surfaces(image_size: [u32; 2], random: &mut Rng) -> SurfaceBuffer {
                 normal: Vec3::ZERO,
                 depth: f32::INFINITY,
                 albedo: Vec3::ZERO,
+                material: 0,
             };
         }
         let step = if y % 20 < 10 { 0.0 } else { 0.3 };
@@ -27,6 +28,7 @@ fn surfaces(image_size: [u32; 2], random: &mut Rng) -> SurfaceBuffer {
             normal: Vec3::new(bend, tilt, 1.0).normalize(),
             depth,
             albedo: Vec3::ONE,
+            material: 0,
         }
     };
     SurfaceBuffer {

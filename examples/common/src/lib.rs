@@ -14,5 +14,7 @@ pub mod folder;
 pub mod frame;
 pub mod picture;
 pub mod progress;
+pub mod reflect;
 pub mod room;
+pub mod sampling;
 pub mod scene;

@@ -15,6 +15,8 @@ pub struct Surface {
     /// Infinite for sky.
     pub depth: f32,
     pub albedo: Vec3,
+    /// The place of its material in [`Mesh::materials`](super::Mesh::materials). Any, for sky.
+    pub material: usize,
 }
 
 impl Surface {
@@ -23,6 +25,7 @@ impl Surface {
         normal: Vec3::ZERO,
         depth: f32::INFINITY,
         albedo: Vec3::ZERO,
+        material: 0,
     };
 
     pub fn is_sky(&self) -> bool {
@@ -60,6 +63,7 @@ impl SurfaceBuffer {
                     normal: hit.normal,
                     depth: camera.to_camera_space(hit.position).z,
                     albedo: tracer.albedo(&hit),
+                    material: hit.material,
                 })
         };
         Self {

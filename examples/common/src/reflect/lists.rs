@@ -1,0 +1,352 @@
+//! Lists of lights for tiles, by what is known of their receivers and by who decides.
+
+use rayon::prelude::*;
+use stochastic_light_culling::{
+    Blind, Culler, Error, GgxLobe, LightBatch, LightLists, LobeFamily, ProjectedEllipsoid,
+    RadianceEstimator, ReceiverCluster, ReceiverCuller, Roulette, Schlick, ShadingBatch, Tight,
+    TileProbability, TileReceivers, WeightedLists, glam::Vec3,
+};
+
+use super::shade::{Lights, shade};
+use super::{Division, Palette, Receiving, Reflected, Scenery};
+use crate::frame::{GlossyLight, Subregion, Tiles, timed};
+
+/// What the probability of a light depends on, besides its radiance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Known {
+    /// Nothing: δ is arriving radiance.
+    Nothing,
+    /// What receivers reflect: δ is radiance at the eye.
+    Receivers,
+}
+
+/// Who decides whether a light counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Decided {
+    /// Each pixel, by its own radiance.
+    ByPixel,
+    /// The tile, for all of its pixels.
+    ByTile(TileProbability),
+}
+
+/// A way to draw lights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roulettes {
+    pub known: Known,
+    pub decided: Decided,
+    /// Whether a tile that decides has a δ in proportion to what it reflects, so that noise is even to the eye.
+    pub own_delta: bool,
+}
+
+/// The lights of a subregion.
+struct Own {
+    batch: ShadingBatch<GgxLobe<Schlick>>,
+    tints: Vec<Vec3>,
+}
+
+/// Cullers of a subregion, with the lists that they fill.
+struct Listing {
+    bounds: Culler<ProjectedEllipsoid>,
+    receivers: ReceiverCuller,
+    lists: LightLists,
+    weighted: WeightedLists,
+}
+
+pub(super) fn light<R: Receiving, P: Palette>(
+    scenery: &Scenery<R, P>,
+    roulettes: Roulettes,
+    division: Division,
+) -> Result<Reflected, Error> {
+    let frame = scenery.frame;
+    let subregions = division.tiles.subregions();
+    let (own, lights_ms) = timed(|| {
+        (0..frame.interleave.subregions())
+            .into_par_iter()
+            .map(|subregion| own_lights(scenery, subregion))
+            .collect::<Vec<Own>>()
+    });
+    let listing = || -> Result<Listing, Error> {
+        let receivers = ReceiverCuller::new(&frame.roulette);
+        Ok(Listing {
+            bounds: Culler::new(),
+            receivers: receivers.with_least_distance_squared(frame.least_distance_squared)?,
+            lists: LightLists::new(),
+            weighted: WeightedLists::new(),
+        })
+    };
+    let mut listings = (subregions.iter())
+        .map(|_| listing())
+        .collect::<Result<Vec<_>, _>>()?;
+
+    // Each step is taken twice: the first time makes room, and the second is like a later frame.
+    let (build_ms, cull_ms) = match (roulettes.known, roulettes.decided) {
+        (Known::Nothing, Decided::ByPixel) => {
+            let (batches, ms) = timed(|| {
+                (0..frame.interleave.subregions())
+                    .into_par_iter()
+                    .map(|subregion| bounds(scenery, subregion))
+                    .collect::<Vec<_>>()
+            });
+            let mut cull = || {
+                let listings = listings.par_iter_mut().zip(subregions).zip(&batches);
+                listings.try_for_each(|((listing, subregion), batch)| {
+                    let Listing { bounds, lists, .. } = listing;
+                    bounds.cull(batch, &subregion.depths, lists).map(drop)
+                })
+            };
+            cull()?;
+            let (culled, cull_ms) = timed(cull);
+            culled?;
+            (ms, cull_ms)
+        }
+        (Known::Nothing, _) => {
+            let family = |_: &R| Blind;
+            list(scenery, roulettes, division, &own, &mut listings, family)?
+        }
+        (Known::Receivers, _) => {
+            list(scenery, roulettes, division, &own, &mut listings, R::family)?
+        }
+    };
+
+    let mut image = Reflected::black(scenery.receivers.len());
+    let tiles = division.tiles;
+    image.shade_ms = shade_by(scenery, roulettes, tiles, &own, &listings, &mut image)?;
+    image.build_ms = lights_ms + build_ms;
+    image.cull_ms = cull_ms;
+    Ok(image)
+}
+
+/// Shades `image` by the lists, and gives the milliseconds that it takes.
+fn shade_by<R: Receiving, P: Palette>(
+    scenery: &Scenery<R, P>,
+    roulettes: Roulettes,
+    tiles: &Tiles,
+    own: &[Own],
+    listings: &[Listing],
+    image: &mut Reflected,
+) -> Result<f64, Error> {
+    let (roulette, least) = (
+        &scenery.frame.roulette,
+        scenery.frame.least_distance_squared,
+    );
+    let lights: Vec<Lights> = own.iter().map(|own| (&own.batch, &*own.tints)).collect();
+    let list_of = |i: usize, tile, interval| listings[i].lists.of(tile, interval);
+    let weighted_of = |i: usize, tile, interval| listings[i].weighted.of(tile, interval);
+    let ((), ms) = match (roulettes.known, roulettes.decided) {
+        (Known::Nothing, Decided::ByPixel) => {
+            let estimator = RadianceEstimator::new(roulette).with_least_distance_squared(least)?;
+            timed(|| shade(scenery, tiles, &lights, &estimator, list_of, image))
+        }
+        (Known::Receivers, Decided::ByPixel) => {
+            let estimator =
+                RadianceEstimator::aware(roulette).with_least_distance_squared(least)?;
+            timed(|| shade(scenery, tiles, &lights, &estimator, list_of, image))
+        }
+        (_, Decided::ByTile(_)) => {
+            let estimator = RadianceEstimator::listed().with_least_distance_squared(least)?;
+            timed(|| shade(scenery, tiles, &lights, &estimator, weighted_of, image))
+        }
+    };
+    Ok(ms)
+}
+
+/// For each subregion and each tile, the lights that a receiver may accept by what it reflects; a light has the index of
+/// its turn in the subregion.
+pub(super) fn lights_to_accept<R: Receiving, P: Palette>(
+    scenery: &Scenery<R, P>,
+    division: Division,
+) -> Result<Vec<LightLists>, Error> {
+    let frame = scenery.frame;
+    let subregions = division.tiles.subregions().par_iter().enumerate();
+    let lists = subregions.map(|(i, subregion)| {
+        let own = own_lights(scenery, i as u32);
+        let intervals = subregion.depths.intervals();
+        let mut tiles = TileReceivers::new(&subregion.grid, division.parts, intervals)?;
+        fill(scenery, (i as u32, subregion), &mut tiles, R::family, None);
+        let mut lists = LightLists::new();
+        ReceiverCuller::new(&frame.roulette)
+            .with_least_distance_squared(frame.least_distance_squared)?
+            .cull(&own.batch, &tiles, &mut lists)?;
+        Ok(lists)
+    });
+    lists.collect()
+}
+
+/// The lists by the receivers of tiles, of which `family` tells what is known; the milliseconds to collect these, and to
+/// cull.
+fn list<R: Receiving, P: Palette, F: LobeFamily>(
+    scenery: &Scenery<R, P>,
+    Roulettes {
+        decided, own_delta, ..
+    }: Roulettes,
+    division: Division,
+    own: &[Own],
+    listings: &mut [Listing],
+    family: impl Fn(&R) -> F + Sync,
+) -> Result<(f64, f64), Error> {
+    let subregions = division.tiles.subregions();
+    let empty = |subregion: &Subregion| {
+        TileReceivers::new(
+            &subregion.grid,
+            division.parts,
+            subregion.depths.intervals(),
+        )
+    };
+    let mut tiles = subregions
+        .iter()
+        .map(empty)
+        .collect::<Result<Vec<_>, _>>()?;
+    let (filled, build_ms) = timed(|| {
+        let tiles = tiles.par_iter_mut().zip(subregions).enumerate();
+        tiles.try_for_each(|(i, (tiles, subregion))| {
+            let place = (i as u32, subregion);
+            let scales = own_delta.then(|| delta_scales(scenery, place, &own[i].batch));
+            let scales = scales.transpose()?;
+            fill(scenery, place, tiles, &family, scales.as_deref());
+            Ok::<(), Error>(())
+        })
+    });
+    filled?;
+    let mut cull = || {
+        let listings = listings.par_iter_mut().zip(&tiles).zip(own);
+        listings.try_for_each(|((listing, tiles), own)| {
+            let Listing {
+                receivers,
+                lists,
+                weighted,
+                ..
+            } = listing;
+            match decided {
+                Decided::ByPixel => receivers.cull(&own.batch, tiles, lists),
+                Decided::ByTile(probability) => {
+                    receivers.draw(probability, &own.batch, tiles, weighted)
+                }
+            }
+        })
+    };
+    cull()?;
+    let (culled, cull_ms) = timed(cull);
+    culled?;
+    Ok((build_ms, cull_ms))
+}
+
+/// Collects the receivers of the tiles of a subregion, with a δ for each depth interval of each tile, if there are `scales`.
+fn fill<R: Receiving, P: Palette, F: LobeFamily>(
+    scenery: &Scenery<R, P>,
+    (index, subregion): (u32, &Subregion),
+    tiles: &mut TileReceivers<F>,
+    family: impl Fn(&R) -> F,
+    scales: Option<&[f32]>,
+) {
+    let (frame, parts) = (scenery.frame, tiles.parts_grid());
+    let parts_in_tile = subregion.grid.tile_size() / parts.tile_size();
+    tiles.fill(|part, interval| {
+        let tile = part.map(|n| n / parts_in_tile);
+        let receiver = |pixel: [u32; 2]| {
+            let pixel = frame.interleave.join_pixel(index, pixel);
+            let surface = frame.surfaces.at(pixel);
+            let of_surface = subregion.depths.interval_of(tile, surface.depth)?;
+            let receiver = scenery.receivers[frame.surfaces.index(pixel)].as_ref()?;
+            (of_surface == interval).then(|| (receiver.position, family(&receiver.lobe)))
+        };
+        let cluster = ReceiverCluster::of(parts.pixels(part).pixels().filter_map(receiver))?;
+        let scale = scales.map(|scales| scales[slot(subregion, tile, interval)]);
+        match scale {
+            Some(scale) => cluster.with_delta_scale(scale).ok(),
+            None => Some(cluster),
+        }
+    });
+}
+
+/// The place of a depth interval of a tile among those of all tiles.
+fn slot(Subregion { grid, depths }: &Subregion, [x, y]: [u32; 2], interval: u32) -> usize {
+    ((y * grid.size()[0] + x) * depths.intervals() + interval) as usize
+}
+
+/// For each depth interval of each tile, δ over that of the frame: what a receiver in its middle reflects of some of the
+/// lights, over the mean of all tiles.
+///
+/// No ξ has a part in it, so that every estimate stays exact in the mean.
+fn delta_scales<R: Receiving, P: Palette>(
+    scenery: &Scenery<R, P>,
+    (index, subregion): (u32, &Subregion),
+    lights: &ShadingBatch<GgxLobe<Schlick>>,
+) -> Result<Vec<f32>, Error> {
+    /// One light in so many is looked at.
+    const STRIDE: usize = 4;
+    /// What a tile reflects besides, over the mean: a few lights may show nothing of it.
+    const FLOOR: f32 = 0.05;
+    let frame = scenery.frame;
+    let Subregion { grid, depths } = subregion;
+    let mut middles = Vec::new();
+    for tile in grid.tiles() {
+        for interval in 0..depths.intervals() {
+            let is_seen = |pixel: &[u32; 2]| {
+                let pixel = frame.interleave.join_pixel(index, *pixel);
+                depths.interval_of(tile, frame.surfaces.at(pixel).depth) == Some(interval)
+            };
+            let pixels: Vec<[u32; 2]> = grid.pixels(tile).pixels().filter(is_seen).collect();
+            if let Some(pixel) = pixels.get(pixels.len() / 2) {
+                let pixel = frame.interleave.join_pixel(index, *pixel);
+                let receiver = scenery.receivers[frame.surfaces.index(pixel)].as_ref();
+                middles.extend(receiver.map(|r| (slot(subregion, tile, interval), r)));
+            }
+        }
+    }
+    // So small that all lights are accepted.
+    let estimator = RadianceEstimator::new(&Roulette::new(1e-30)?);
+    let estimator = estimator.with_least_distance_squared(frame.least_distance_squared)?;
+    let some: Vec<u32> = (0..lights.len() as u32).step_by(STRIDE).collect();
+    let mut sums = vec![0.0; middles.len()];
+    let receivers = middles
+        .iter()
+        .map(|(_, receiver)| ((*receiver).clone(), &*some));
+    estimator.fold_reflected_at_points(lights, receivers, (), |(), turn, _, reflected| {
+        sums[turn] += reflected;
+    });
+    let mean = sums.iter().sum::<f32>() / sums.len().max(1) as f32;
+    let [columns, rows] = grid.size();
+    let mut scales = vec![1.0; (columns * rows * depths.intervals()) as usize];
+    for ((slot, _), sum) in middles.iter().zip(sums) {
+        if mean > 0.0 {
+            scales[*slot] = (sum / mean + FLOOR).min(1e6);
+        }
+    }
+    Ok(scales)
+}
+
+fn own_lights<R, P>(scenery: &Scenery<R, P>, subregion: u32) -> Own {
+    let own = || of_subregion(scenery, subregion);
+    let mut batch = ShadingBatch::new();
+    batch.extend(own().map(|light| (&light.vpl, light.xi)));
+    Own {
+        batch,
+        tints: own().map(|light| light.tint).collect(),
+    }
+}
+
+/// The bounds of the lights of a subregion, by their places in it.
+fn bounds<R, P>(scenery: &Scenery<R, P>, subregion: u32) -> LightBatch<ProjectedEllipsoid> {
+    let (roulette, camera): (&Roulette, _) = (&scenery.frame.roulette, scenery.camera);
+    let mut batch = LightBatch::new();
+    let bound = |(i, light): (u32, &GlossyLight)| {
+        let bound = light.vpl.bound_by(Tight, roulette, light.xi);
+        Some((i, bound.project(camera)?))
+    };
+    batch.extend(
+        (0..)
+            .zip(of_subregion(scenery, subregion))
+            .filter_map(bound),
+    );
+    batch
+}
+
+fn of_subregion<'a, R, P>(
+    scenery: &'a Scenery<R, P>,
+    subregion: u32,
+) -> impl Iterator<Item = &'a GlossyLight> {
+    let interleave = &scenery.frame.interleave;
+    let count = interleave.lights_in(subregion, scenery.lights.len() as u32);
+    let indices = (0..count).map(move |local| interleave.join_light(subregion, local));
+    indices.map(|i| &scenery.lights[i as usize])
+}
