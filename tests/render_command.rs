@@ -33,6 +33,9 @@ fn refuses_values_outside_their_range() {
         (["--alpha", "rough"], "'rough'"),
         (["--f0", "1.5"], "F0 is 1.5"),
         (["--f0", "-0.1"], "-0.1"),
+        (["--receiver-alpha", "0"], "roughness α is 0"),
+        (["--receiver-alpha", "smooth"], "'smooth'"),
+        (["--receiver-f0", "2"], "F0 is 2"),
         (["--delta", "0"], "δ is 0"),
         (["--delta", "inf"], "δ is inf"),
         (["--vpls", "0"], "'0'"),
@@ -64,6 +67,8 @@ fn refuses_values_outside_their_range() {
 fn refuses_bounds_that_smooth_lights_do_not_have() {
     let arguments = ["--lights", "vsgl", "--bound", "sphere"];
     assert_refused("smooth_bound", &arguments, "one bound, tight");
+    let arguments = ["--lights", "vsgl", "--receiver-f0", "0.5"];
+    assert_refused("smooth_receivers", &arguments, "--lights vpl");
 }
 
 #[test]
@@ -312,6 +317,43 @@ fn small_run(test: &str, more: &[&str]) -> (Value, Vec<String>) {
     }
     let json = serde_json::from_slice(&output.stdout);
     (json.expect("standard output is one JSON object"), pictures)
+}
+
+#[test]
+fn lights_receivers_with_and_without_knowing_them() {
+    // Coarse, so that something is left to chance.
+    let coat = ["--receiver-alpha", "0.3", "--receiver-f0", "0.5"];
+    let coarse = ["--delta", "1", "--tile", "4", "--interleave", "1"];
+    let arguments = [&coarse[..], &["--bound", "tight"], &coat].concat();
+    let (json, pictures) = small_run("receivers", &arguments);
+    for name in ["receivers.png", "receivers-all.png"] {
+        assert!(pictures.contains(&name.into()), "{pictures:?}");
+    }
+    let methods = json["methods"].as_array().expect("a list of methods");
+    let names: Vec<&Value> = methods.iter().map(|row| &row["bound"]).collect();
+    let expected = [
+        "tight",
+        "tight",
+        "blind",
+        "blind tile",
+        "aware",
+        "aware tile",
+    ];
+    assert_eq!(names, expected);
+    for row in &methods[2..] {
+        assert!(number(row, "contributing_per_pixel") > 0.0);
+        assert!(number(row, "contributing_per_pixel") <= number(row, "lights_per_pixel"));
+        assert!(number(row, "rmse") > 0.0);
+    }
+    // What a pixel accepts blindly does not depend on what it reflects.
+    assert!(
+        number(&methods[2], "contributing_per_pixel")
+            <= number(&methods[1], "contributing_per_pixel")
+    );
+
+    let (without, _) = small_run("no_receivers", &["--bound", "tight"]);
+    let methods = without["methods"].as_array().expect("a list of methods");
+    assert_eq!(methods.len(), 2);
 }
 
 #[test]

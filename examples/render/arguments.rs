@@ -33,6 +33,15 @@ pub struct Arguments {
     #[arg(long, value_parser = schlick)]
     pub f0: Option<Schlick>,
 
+    /// Roughness α in (0, 1] of a coat over all that is seen, as a receiver [default: what the file says; of scenes without
+    /// a gloss of their own, none, unless there is --receiver-f0]
+    #[arg(long, value_parser = ggx, value_name = "ALPHA")]
+    pub receiver_alpha: Option<Ggx>,
+
+    /// Its reflectance F0 at normal incidence, in [0, 1] [default: 0.04]
+    #[arg(long, value_parser = schlick, value_name = "F0")]
+    pub receiver_f0: Option<Schlick>,
+
     /// Rays from the light; each hit makes a virtual point light
     #[arg(long, default_value_t = 16384, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     pub vpls: u32,
@@ -124,6 +133,20 @@ impl Arguments {
         Ok(Gloss::new(ggx, fresnel))
     }
 
+    /// The coat of all receivers; none if they are what the scene says.
+    ///
+    /// # Errors
+    ///
+    /// A number that is not in range, which no default is.
+    pub fn coat(&self) -> Result<Option<Gloss>, Error> {
+        if self.receiver_alpha.is_none() && self.receiver_f0.is_none() {
+            return Ok(None);
+        }
+        let ggx = self.receiver_alpha.map_or_else(|| Ggx::new(0.1), Ok)?;
+        let fresnel = self.receiver_f0.map_or_else(|| Schlick::new(0.04), Ok)?;
+        Ok(Some(Gloss::new(ggx, fresnel)))
+    }
+
     /// How to make smooth lights; none for points.
     ///
     /// # Errors
@@ -138,6 +161,12 @@ impl Arguments {
                 Err("--clustering is for --lights vsgl".into())
             }
             LightKind::Vpl => Ok(None),
+            LightKind::Vsgl if self.receiver_alpha.is_some() => {
+                Err("--receiver-alpha is for --lights vpl".into())
+            }
+            LightKind::Vsgl if self.receiver_f0.is_some() => {
+                Err("--receiver-f0 is for --lights vpl".into())
+            }
             LightKind::Vsgl if self.bound.iter().any(|bound| *bound != BoundKind::Tight) => {
                 Err("--lights vsgl has one bound, tight".into())
             }

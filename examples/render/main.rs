@@ -11,6 +11,7 @@ mod arguments;
 mod look;
 mod output;
 mod positions;
+mod receivers;
 mod smooth;
 
 use std::process::ExitCode;
@@ -111,31 +112,52 @@ fn render(arguments: &Arguments) -> Result<(), String> {
         steps.push(("reference".into(), reference_ms));
     }
 
+    let view = receivers::View {
+        scene: &scene,
+        camera: &camera,
+        frame: &frame,
+        lights: &lights.glossy,
+        tiles: [&tiles, &pixels],
+        gloss,
+    };
+    let of_receivers = match clusters {
+        Some(_) => Vec::new(),
+        None => receivers::measure(arguments, &view)?,
+    };
+
     let picture = tone_mapped(arguments.size, &finished, Exposure::of(&finished));
     write_png(&arguments.out, "picture.png", &picture)?;
     write_pictures(arguments, &frame, &images, &glossy, reference.as_ref())?;
-    let [glossy_image, diffuse_image] = &images;
-    let error = |image: &[Vec3], of: fn(&Reference) -> &[Vec3]| {
-        let reference = reference.as_ref()?;
-        Some(frame::rmse(
-            &surfaces,
-            image,
-            &reference.pixels,
-            of(reference),
-        ))
-    };
-    let glossy_error = error(glossy_image, |reference| &reference.glossy);
-    let diffuse_error = error(diffuse_image, |reference| &reference.diffuse);
-    let rows = glossy
-        .iter()
-        .map(|measured| row(&surfaces, measured, glossy_error));
+    let (mut glossy, diffuse) = rows(&surfaces, &images, &glossy, &diffuse, reference.as_ref());
+    glossy.extend(of_receivers);
     let results = Results {
-        glossy: rows.collect(),
-        diffuse: row(&surfaces, &diffuse, diffuse_error),
+        glossy,
+        diffuse,
         steps,
     };
     report(arguments, clusters, &scene, &results);
     Ok(())
+}
+
+/// The rows of the table for glossy lights, and for diffuse ones.
+fn rows(
+    surfaces: &SurfaceBuffer,
+    [glossy_image, diffuse_image]: &[Vec<Vec3>; 2],
+    glossy: &[Measured],
+    diffuse: &Measured,
+    reference: Option<&Reference>,
+) -> (Vec<Row>, Row) {
+    let error = |image: &[Vec3], of: fn(&Reference) -> &[Vec3]| {
+        let reference = reference?;
+        let pixels = &reference.pixels;
+        Some(frame::rmse(surfaces, image, pixels, of(reference)))
+    };
+    let glossy_error = error(glossy_image, |reference| &reference.glossy);
+    let diffuse_error = error(diffuse_image, |reference| &reference.diffuse);
+    let of_glossy = glossy
+        .iter()
+        .map(|measured| row(surfaces, measured, glossy_error));
+    (of_glossy.collect(), row(surfaces, diffuse, diffuse_error))
 }
 
 /// The frame by its glossy lights, with each bound asked for, and by its diffuse lights.
