@@ -135,6 +135,9 @@ fn check_every_study(scene: &str) {
             "ltsd_ring",
             "ltsd_scenes",
             "receivers",
+            "receivers_equal_time",
+            "receivers_lists",
+            "receivers_time",
             "spread",
             "tests",
             "tightness",
@@ -187,6 +190,9 @@ fn check_every_study(scene: &str) {
             .zip(&knowing)
             .all(|(blind, knowing)| blind > knowing)
     );
+    check_receivers(&studies["receivers_time"], &studies["receivers_equal_time"]);
+    let missing = of(&studies["receivers_lists"], "missing");
+    assert!(missing.iter().all(|missing| *missing == 0.0));
     check_smooth_lights(&studies["vsgl"]);
     let fit = &studies["ltsd_fit"];
     let [f0, error, energy] = ["f0", "relative_l2", "energy"].map(|name| of(fit, name));
@@ -218,6 +224,33 @@ fn check_every_study(scene: &str) {
     }
 }
 
+fn check_receivers(time: &Columns, equal_time: &Columns) {
+    let methods: HashSet<&str> = time["method"].iter().map(|s| &**s).collect();
+    assert_eq!(methods.len(), 14, "{methods:?}");
+    let receivers: HashSet<&str> = time["receiver"].iter().map(|s| &**s).collect();
+    assert_eq!(receivers.len(), 7, "{receivers:?}");
+    let [ms, rmse, sigma] =
+        ["ms", "relative_rmse", "sigma_over_mean"].map(|name| numbers(time, name));
+    assert!(ms.iter().all(|ms| *ms > 0.0));
+    for (method, rmse) in time["method"].iter().zip(rmse) {
+        // All lights alone leave no error.
+        assert_eq!(rmse > 0.0, method != "all lights", "{method}");
+    }
+    // The finest setting of a curve leaves less than the coarsest.
+    let rows: Vec<usize> = (0..sigma.len()).collect();
+    let curves = rows.chunk_by(|a, b| time["method"][*a] == time["method"][*b]);
+    for curve in curves.filter(|curve| curve.len() > 1) {
+        let [coarsest, finest] = [curve[0], curve[curve.len() - 1]];
+        let (method, receiver) = (&time["method"][finest], &time["receiver"][finest]);
+        assert!(sigma[finest] < sigma[coarsest], "{method}, {receiver}");
+    }
+    let gains = numbers(equal_time, "variance_gain");
+    for (method, gain) in equal_time["method"].iter().zip(gains) {
+        assert!(gain > 0.0, "{method}");
+        assert_eq!(gain == 1.0, method == "blind exact", "{method}");
+    }
+}
+
 fn check_smooth_lights(study: &Columns) {
     let methods: HashSet<&str> = study["method"].iter().map(|s| &**s).collect();
     let all = ["vpl", "vsgl", "vsgl_culled", "kmeans"];
@@ -235,7 +268,11 @@ fn check_smooth_lights(study: &Columns) {
 #[test]
 fn makes_the_study_asked_for_of_both_scenes() {
     let studies = quick_run("one", &["--study", "receivers"]);
-    assert_eq!(studies.keys().collect::<Vec<_>>(), ["receivers"]);
+    let mut names: Vec<&String> = studies.keys().collect();
+    names.sort_unstable();
+    let parts = ["equal_time", "lists", "time"].map(|part| format!("receivers_{part}"));
+    assert_eq!(names[0], "receivers");
+    assert!(names[1..].iter().copied().eq(&parts), "{names:?}");
     let scenes: HashSet<&str> = studies["receivers"]["scene"].iter().map(|s| &**s).collect();
     assert_eq!(scenes, HashSet::from(["ring", "cornell"]));
 }

@@ -46,7 +46,7 @@ pub enum StudyKind {
     VplCount,
     /// Error and milliseconds against the width of interleaving, with and without denoising
     Interleaving,
-    /// What it costs to leave the receiver's BRDF out of the probability
+    /// What it costs to leave the receiver's BRDF out of the probability, and error against time with it
     Receivers,
     /// Error of the mean of 1 to 64 frames, by how the ξ of lights and frames go together
     Spread,

@@ -44,10 +44,10 @@ pub fn make(kind: StudyKind, subjects: &[Subject], done: &dyn Fn()) -> Vec<Study
         StudyKind::Tests => tests::make(subjects, done),
         StudyKind::VplCount => vpl_count::make(subjects, done),
         StudyKind::Interleaving => interleaving::make(subjects, done),
-        StudyKind::Receivers => receivers::make(subjects, done),
         StudyKind::Spread => spread::make(subjects, done),
         StudyKind::TileBorders => tile_borders::make(subjects, done),
         StudyKind::Vsgl => vsgl::make(subjects, done),
+        StudyKind::Receivers => return receivers::make(subjects, done),
         StudyKind::Ltsd => return ltsd::make(subjects, done),
     };
     vec![study]
@@ -58,6 +58,7 @@ pub fn parts(kind: StudyKind, subjects: usize) -> usize {
     match kind {
         StudyKind::Functions | StudyKind::Tightness => 1,
         StudyKind::Ltsd => ltsd::PARTS,
+        StudyKind::Receivers => receivers::parts(subjects),
         StudyKind::EqualTime => subjects * equal_time::ROUGHNESSES.len(),
         StudyKind::Spread => subjects * spread::ROUGHNESSES.len(),
         StudyKind::Vsgl => subjects * vsgl::ROUGHNESSES.len(),

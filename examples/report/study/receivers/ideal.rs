@@ -1,4 +1,4 @@
-//! (h) What it costs to leave the receiver's BRDF out of the probability: the paper's Fig. 12.
+//! What it costs to leave the receiver's BRDF out of the probability: the paper's Fig. 12.
 //!
 //! A light that adds c with probability p has the variance c²(1/p − 1). With p from the light's
 //! radiance L alone, p = min(L/δ, 1); a culling that knew the receiver could take p = min(c/δ', 1). Both
@@ -9,7 +9,7 @@ use common::scene::Surface;
 use rayon::prelude::*;
 use stochastic_light_culling::{Direction, GgxLobe, Incidence, LambertLobe, Lobe, glam::Vec3};
 
-use super::{DELTA, F0, ROUGHNESS, Study, of_frames};
+use super::super::{DELTA, F0, ROUGHNESS, Study, of_frames};
 use crate::figure::{Axis, Figure, Line, Look, Panel, Point, Series};
 use crate::sheet::Sheet;
 use crate::subject::{Gloss, Subject};
