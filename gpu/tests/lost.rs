@@ -227,7 +227,6 @@ fn touched(gpu: &Gpu, kernel: &Kernel, cases: &[Case]) -> Vec<u32> {
     gpu.run(&[Dispatch {
         kernel,
         buffers: &[(0, &table), (1, &buffers.0), (2, &buffers.1)],
-        own: &[],
         workgroups: [cases.len().div_ceil(64) as u32, 1, 1],
     }])
     .unwrap();

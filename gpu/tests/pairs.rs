@@ -168,13 +168,11 @@ fn on_the_gpu(gpu: &Gpu, frame: &Frame, project: &str) -> Vec<[bool; 2]> {
             } else {
                 &projecting
             },
-            own: &[],
             workgroups: [LIGHTS.div_ceil(64) as u32, 1, 1],
         },
         Dispatch {
             kernel: &second,
             buffers: &[(1, &lights), (3, &tiles), (4, &projected), (5, &touched)],
-            own: &[],
             workgroups: [words.div_ceil(64) as u32, 1, 1],
         },
     ])
