@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 use stochastic_light_culling::{
-    Blind, Culler, Error, GgxLobe, LightBatch, LightLists, LobeFamily, ProjectedEllipsoid,
-    RadianceEstimator, ReceiverCluster, ReceiverCuller, Roulette, Schlick, ShadingBatch, Tight,
-    TileProbability, TileReceivers, WeightedLists, glam::Vec3,
+    BatchBuilder, Blind, Culler, Error, GgxLobe, LightBatch, LightLists, LobeFamily,
+    ProjectedEllipsoid, RadianceEstimator, ReceiverCluster, ReceiverCuller, Roulette, Schlick,
+    ShadingBatch, Tight, TileProbability, TileReceivers, WeightedLists, glam::Vec3,
 };
 
 use super::shade::{Lights, shade};
@@ -240,16 +240,26 @@ fn fill<R: Receiving, P: Palette, F: LobeFamily>(
 ) {
     let (frame, parts) = (scenery.frame, tiles.parts_grid());
     let parts_in_tile = subregion.grid.tile_size() / parts.tile_size();
+    let [width, height] = subregion.grid.image_size();
+    // Once, since the pixels of a subregion are far apart in the image.
+    let receivers = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+    let receivers: Vec<Option<(u32, Vec3, F)>> = receivers
+        .map(|local| {
+            let pixel = frame.interleave.join_pixel(index, local);
+            let tile = subregion.grid.tile_of(local);
+            let depth = frame.surfaces.at(pixel).depth;
+            let interval = subregion.depths.interval_of(tile, depth)?;
+            let receiver = scenery.receivers[frame.surfaces.index(pixel)].as_ref()?;
+            Some((interval, receiver.position, family(&receiver.lobe)))
+        })
+        .collect();
     tiles.fill(|part, interval| {
         let tile = part.map(|n| n / parts_in_tile);
-        let receiver = |pixel: [u32; 2]| {
-            let pixel = frame.interleave.join_pixel(index, pixel);
-            let surface = frame.surfaces.at(pixel);
-            let of_surface = subregion.depths.interval_of(tile, surface.depth)?;
-            let receiver = scenery.receivers[frame.surfaces.index(pixel)].as_ref()?;
-            (of_surface == interval).then(|| (receiver.position, family(&receiver.lobe)))
-        };
-        let cluster = ReceiverCluster::of(parts.pixels(part).pixels().filter_map(receiver))?;
+        let pixels = parts.pixels(part).pixels();
+        let cluster = ReceiverCluster::of(pixels.filter_map(|[x, y]| {
+            let (own, position, family) = receivers[(y * width + x) as usize]?;
+            (own == interval).then_some((position, family))
+        }))?;
         let scale = scales.map(|scales| scales[slot(subregion, tile, interval)]);
         match scale {
             Some(scale) => cluster.with_delta_scale(scale).ok(),
@@ -329,15 +339,9 @@ fn own_lights<R, P>(scenery: &Scenery<R, P>, subregion: u32) -> Own {
 fn bounds<R, P>(scenery: &Scenery<R, P>, subregion: u32) -> LightBatch<ProjectedEllipsoid> {
     let (roulette, camera): (&Roulette, _) = (&scenery.frame.roulette, scenery.camera);
     let mut batch = LightBatch::new();
-    let bound = |(i, light): (u32, &GlossyLight)| {
-        let bound = light.vpl.bound_by(Tight, roulette, light.xi);
-        Some((i, bound.project(camera)?))
-    };
-    batch.extend(
-        (0..)
-            .zip(of_subregion(scenery, subregion))
-            .filter_map(bound),
-    );
+    let lights = (0..).zip(of_subregion(scenery, subregion));
+    let lights = lights.map(|(i, light)| (i, &light.vpl, light.xi));
+    BatchBuilder::new(roulette, camera).add_by(Tight, lights, &mut batch);
     batch
 }
 

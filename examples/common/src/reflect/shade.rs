@@ -135,14 +135,20 @@ impl<R: Receiving, P: Palette> Row<'_, R, P> {
                 };
                 let mut sums: Sums = [[0.0; PointBlock::LEN]; 3];
                 let mut contributing = [0; PointBlock::LEN];
-                estimator.reflected_at_block(batch, list, &block, |estimates, reflected| {
-                    let tint = tints[estimates.light as usize];
-                    let palette = &self.scenery.palette;
-                    palette.add(places, estimates, reflected, tint, &mut sums);
-                    for (i, contributing) in contributing.iter_mut().enumerate() {
-                        *contributing += estimates.accepted >> i & 1;
-                    }
-                });
+                estimator.reflected_at_block(
+                    batch,
+                    list,
+                    &block,
+                    #[inline(always)]
+                    |estimates, reflected| {
+                        let tint = tints[estimates.light as usize];
+                        let palette = &self.scenery.palette;
+                        palette.add(places, estimates, reflected, tint, &mut sums);
+                        for (i, contributing) in contributing.iter_mut().enumerate() {
+                            *contributing += estimates.accepted >> i & 1;
+                        }
+                    },
+                );
                 shaded.extend(places.iter().enumerate().map(|(i, place)| Pixel {
                     place: *place,
                     radiance: sums.map(|sums| sums[i]).into(),

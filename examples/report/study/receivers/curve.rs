@@ -31,8 +31,14 @@ impl Curve {
     /// there.
     pub fn at(&self, ms: f64) -> Option<AtTime> {
         let fast = self.steps.iter().rposition(|step| step.ms <= ms)?;
-        let [fast, slow] = [&self.steps[fast], self.steps.get(fast + 1)?];
-        let share = (ms / fast.ms).ln() / (slow.ms / fast.ms).ln();
+        let (fast, next) = (&self.steps[fast], self.steps.get(fast + 1));
+        // The last setting is there for its own time.
+        let slow = next.or((fast.ms >= ms).then_some(fast))?;
+        let share = if slow.ms > fast.ms {
+            (ms / fast.ms).ln() / (slow.ms / fast.ms).ln()
+        } else {
+            0.0
+        };
         let between = |of: fn(&Measures) -> f64| {
             let [a, b] = [fast, slow].map(|step| of(&step.measures).max(f64::MIN_POSITIVE).ln());
             a + share * (b - a)
