@@ -2,7 +2,7 @@ use core::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
-use super::{Cap, Caps, Lobe, LobeFamily, LobeNumbers, Majorant, ReceiverLobe};
+use super::{Cap, Caps, Lobe, LobeNumbers, Majorant};
 use crate::num::{Single, Vector3, round_up};
 
 /// A lobe with the same value 1/(4π) sr⁻¹ in every direction: the ordinary point light of engines
@@ -57,40 +57,6 @@ impl Lobe for ConstantLobe {
         _: impl Fn(usize) -> Option<&'a Self>,
         cap: &Caps<N>,
     ) -> Majorant<N> {
-        constant_majorant(cap)
+        Majorant::exactly(cap.splat(round_up(Self::PEAK, 2)))
     }
-}
-
-/// A receiver that any light of the same radiance lights alike. With this lobe, a choice of lights knows where
-/// receivers are and nothing else.
-impl ReceiverLobe for ConstantLobe {
-    type Family = Self;
-
-    fn family(&self) -> Self {
-        Self
-    }
-}
-
-impl LobeFamily for ConstantLobe {
-    type Sum = ();
-
-    fn to_sum(&self) {}
-
-    fn add_to(&self, (): &mut ()) {}
-
-    fn mean((): &()) -> Self {
-        Self
-    }
-
-    fn widen(&mut self, _: &Self) {}
-
-    #[inline(always)]
-    fn majorant_in_lanes<N: Single>(&self, cap: &Caps<N>) -> Majorant<N> {
-        constant_majorant(cap)
-    }
-}
-
-#[inline(always)]
-fn constant_majorant<N: Single>(cap: &Caps<N>) -> Majorant<N> {
-    Majorant::exactly(cap.splat(round_up(ConstantLobe::PEAK, 2)))
 }

@@ -12,8 +12,7 @@
 
 use core::fmt::Debug;
 
-use super::cap::Caps;
-use super::{Cap, Lobe};
+use super::{Cap, Caps, Lobe};
 use crate::num::Single;
 
 /// What is known of a lobe, or of many, within a cap of directions, in each lane.
@@ -48,41 +47,50 @@ pub trait ReceiverLobe: Lobe + Clone {
 
 /// What stands for many lobes, such as those of the receivers in a tile.
 pub trait LobeFamily: Copy + Debug + PartialEq + Send + Sync + 'static {
-    /// Sums of axes, and ranges of the other numbers.
+    /// Sums of axes, and ranges of the other numbers. By default those of no lobe.
     #[doc(hidden)]
-    type Sum: Copy;
+    type Sum: Copy + Default;
+
+    /// Mean axes, and ranges of the other numbers.
+    #[doc(hidden)]
+    type Mean;
+
+    /// How far members are from mean axes: zero if there are none.
+    #[doc(hidden)]
+    type Reach: Copy + Default;
 
     /// The family of all members of `families`. `None` if there are none.
     ///
     /// The iterator is walked twice: once for mean axes, once for the chords around them.
     #[must_use]
     fn union(families: impl Iterator<Item = Self> + Clone) -> Option<Self> {
-        let mut sum = families.clone().next()?.to_sum();
-        for family in families.clone().skip(1) {
+        families.clone().next()?;
+        let mut sum = Self::Sum::default();
+        for family in families.clone() {
             family.add_to(&mut sum);
         }
-        let mut union = Self::mean(&sum);
+        let (mean, mut reach) = (Self::mean(&sum), Self::Reach::default());
         for family in families {
-            union.widen(&family);
+            family.widen(&mean, &mut reach);
         }
-        Some(union)
+        Some(Self::around(&mean, &reach))
     }
-
-    /// The sum of this family alone.
-    #[doc(hidden)]
-    fn to_sum(&self) -> Self::Sum;
 
     /// Adds this family to a sum.
     #[doc(hidden)]
     fn add_to(&self, sum: &mut Self::Sum);
 
-    /// The mean axes, without chords yet, and the ranges of the other numbers.
+    /// The mean of a sum.
     #[doc(hidden)]
-    fn mean(sum: &Self::Sum) -> Self;
+    fn mean(sum: &Self::Sum) -> Self::Mean;
 
-    /// Widens the chords of a mean until it holds `member`, which is in the sum.
+    /// Extends `reach` until it holds this family, which is in the sum of the mean.
     #[doc(hidden)]
-    fn widen(&mut self, member: &Self);
+    fn widen(&self, mean: &Self::Mean, reach: &mut Self::Reach);
+
+    /// The family of all members within reach of a mean.
+    #[doc(hidden)]
+    fn around(mean: &Self::Mean, reach: &Self::Reach) -> Self;
 
     /// Computes the majorant of all members within the cap in each lane.
     #[doc(hidden)]
@@ -104,16 +112,18 @@ pub struct Blind;
 
 impl LobeFamily for Blind {
     type Sum = ();
-
-    fn to_sum(&self) {}
+    type Mean = ();
+    type Reach = ();
 
     fn add_to(&self, (): &mut ()) {}
 
-    fn mean((): &()) -> Self {
+    fn mean((): &()) {}
+
+    fn widen(&self, (): &(), (): &mut ()) {}
+
+    fn around((): &(), (): &()) -> Self {
         Self
     }
-
-    fn widen(&mut self, _: &Self) {}
 
     #[inline(always)]
     fn majorant_in_lanes<N: Single>(&self, cap: &Caps<N>) -> Majorant<N> {

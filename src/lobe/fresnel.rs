@@ -144,16 +144,14 @@ pub struct FresnelMajorant {
 }
 
 impl FresnelMajorant {
-    /// The majorant, or 1 where a caller's numbers are none.
-    pub(super) fn or_one(self) -> Self {
-        let is_valid = self.base >= LEAST_REFLECTED && (0.0..=f32::MAX).contains(&self.rise);
-        if is_valid {
-            self
-        } else {
-            Self {
-                base: 1.0,
-                rise: 0.0,
-            }
+    /// The same majorant with numbers in range, and greater ones in place of NaN.
+    #[inline(always)]
+    pub(super) fn in_range(self) -> Self {
+        let base = Real::min(self.base, 1.0);
+        let rise = Real::min(self.rise, f32::MAX);
+        Self {
+            base: Real::max(base, LEAST_REFLECTED),
+            rise: Real::max(rise, 0.0),
         }
     }
 

@@ -1,6 +1,7 @@
-use super::cap::CapSum;
+use super::cap_union::{CapMean, CapReach, CapSum};
 use super::spherical_gaussian::SphericalGaussians;
 use super::{Cap, Caps, LobeFamily, Majorant, ReceiverLobe, SphericalGaussian};
+use crate::base::Direction;
 use crate::num::{Real, Single, Vector3, exponential, round_up};
 
 /// Budget for the share c/(λ + 1).
@@ -40,23 +41,28 @@ impl ReceiverLobe for SphericalGaussian {
     }
 }
 
+impl Default for SphericalGaussianFamily {
+    /// The family of no lobe, to whose numbers any others are joined unchanged.
+    fn default() -> Self {
+        Self {
+            axes: Cap::of_axis(Direction::Z),
+            sharpness: [f32::MAX, 0.0],
+            amplitude: 0.0,
+            share: 0.0,
+        }
+    }
+}
+
 impl LobeFamily for SphericalGaussianFamily {
     /// All numbers but the axes, and those.
     type Sum = (Self, CapSum);
+    /// The same of their mean.
+    type Mean = (Self, CapMean);
+    type Reach = CapReach;
 
     #[inline(always)]
-    fn to_sum(&self) -> Self::Sum {
-        (*self, CapSum::of(&self.axes))
-    }
-
-    #[inline(always)]
-    fn add_to(&self, sum: &mut Self::Sum) {
-        let (family, axes) = sum;
+    fn add_to(&self, (family, axes): &mut Self::Sum) {
         if self.amplitude <= 0.0 {
-            return;
-        }
-        if family.amplitude <= 0.0 {
-            *sum = self.to_sum();
             return;
         }
         let ([least, most], [own_least, own_most]) = (family.sharpness, self.sharpness);
@@ -69,17 +75,21 @@ impl LobeFamily for SphericalGaussianFamily {
         axes.add(&self.axes);
     }
 
-    fn mean((family, axes): &Self::Sum) -> Self {
-        Self {
-            axes: axes.mean(),
-            ..*family
-        }
+    fn mean((family, axes): &Self::Sum) -> Self::Mean {
+        (*family, axes.mean())
     }
 
     #[inline(always)]
-    fn widen(&mut self, member: &Self) {
-        if member.amplitude > 0.0 {
-            self.axes.widen(&member.axes);
+    fn widen(&self, (_, axes): &Self::Mean, reach: &mut CapReach) {
+        if self.amplitude > 0.0 {
+            axes.widen(&self.axes, reach);
+        }
+    }
+
+    fn around((family, axes): &Self::Mean, reach: &CapReach) -> Self {
+        Self {
+            axes: axes.cap(reach),
+            ..*family
         }
     }
 

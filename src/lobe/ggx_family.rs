@@ -1,7 +1,7 @@
 use core::fmt::{self, Debug, Formatter};
 use core::marker::PhantomData;
 
-use super::cap::CapSum;
+use super::cap_union::{CapMean, CapReach, CapSum};
 use super::ggx::masking_root;
 use super::ggx_majorant::{GgxMembers, worst_alpha_squared};
 use super::{
@@ -22,14 +22,15 @@ const STRETCH_ROUNDINGS: u16 = 1;
 ///
 /// Lobes that are [empty](crate::Lobe::is_empty) reflect nothing, so a union leaves them out.
 pub struct GgxFamily<G = HeightCorrelated> {
-    numbers: Numbers,
+    normals: Cap,
+    incoming: Cap,
+    ranges: Ranges,
     masking_shadowing: PhantomData<fn() -> G>,
 }
 
+/// All but directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Numbers {
-    normals: Cap,
-    incoming: Cap,
+pub struct Ranges {
     /// The least μ, or zero if the family is empty.
     incident_cosine: f32,
     /// The least root of G1(ω_i)
@@ -38,19 +39,33 @@ struct Numbers {
     roughness: [f32; 2],
     /// The greatest ratio of that to the other one.
     stretch: f32,
-    /// The least of both.
-    smoothest: f32,
     fresnel: FresnelMajorant,
 }
 
-impl Numbers {
+impl Default for Ranges {
+    /// Those of no lobe, which any other is joined to unchanged.
+    fn default() -> Self {
+        Self {
+            incident_cosine: f32::MAX,
+            incident_root: f32::MAX,
+            roughness: [f32::MAX, 0.0],
+            stretch: 1.0,
+            fresnel: FresnelMajorant {
+                base: 0.0,
+                rise: 0.0,
+            },
+        }
+    }
+}
+
+impl Ranges {
     fn is_empty(&self) -> bool {
         self.incident_cosine <= 0.0
     }
 
-    /// Joins all but the caps of another family. In place: copies would take longer than all the rest.
+    /// Joins those of another family. In place: copies would take longer than all the rest.
     #[inline(always)]
-    fn join_without_caps(&mut self, other: &Self) {
+    fn join(&mut self, other: &Self) {
         let least = |own: &mut f32, other: f32| *own = Real::min(other, *own);
         let most = |own: &mut f32, other: f32| *own = Real::max(other, *own);
         least(&mut self.incident_cosine, other.incident_cosine);
@@ -58,29 +73,27 @@ impl Numbers {
         least(&mut self.roughness[0], other.roughness[0]);
         most(&mut self.roughness[1], other.roughness[1]);
         most(&mut self.stretch, other.stretch);
-        least(&mut self.smoothest, other.smoothest);
         most(&mut self.fresnel.base, other.fresnel.base);
         most(&mut self.fresnel.rise, other.fresnel.rise);
     }
-}
 
-/// The sum of families.
-#[derive(Clone, Copy, Debug)]
-pub struct NumbersSum {
-    normals: CapSum,
-    incoming: CapSum,
-    /// All but the caps.
-    numbers: Numbers,
-}
-
-impl NumbersSum {
-    #[inline(always)]
-    fn of(numbers: &Numbers) -> Self {
-        Self {
-            normals: CapSum::of(&numbers.normals),
-            incoming: CapSum::of(&numbers.incoming),
-            numbers: *numbers,
+    /// These ranges, or those of an empty family where no lobe was joined.
+    fn closed(self) -> Self {
+        if self.incident_cosine <= 1.0 {
+            self
+        } else {
+            Self {
+                incident_cosine: 0.0,
+                incident_root: 1.0,
+                roughness: [1.0; 2],
+                ..self
+            }
         }
+    }
+
+    /// A lower bound of all α_x and α_y.
+    fn smoothest(&self) -> f32 {
+        self.roughness[0] * (1.0 / self.stretch)
     }
 }
 
@@ -89,16 +102,19 @@ impl<F: Fresnel, G: MaskingShadowing> ReceiverLobe for GgxLobe<F, G> {
 
     #[inline(always)]
     fn family(&self) -> GgxFamily<G> {
-        GgxFamily::new(Numbers {
+        let roughness = self.ggx().roughness();
+        GgxFamily {
             normals: Cap::of_axis(self.normal()),
             incoming: Cap::of_axis(self.incoming()),
-            incident_cosine: self.incident_cosine(),
-            incident_root: self.incident_root,
-            roughness: [self.ggx().roughness(); 2],
-            stretch: 1.0,
-            smoothest: self.ggx().roughness(),
-            fresnel: self.fresnel().majorant().or_one(),
-        })
+            ranges: Ranges {
+                incident_cosine: self.incident_cosine(),
+                incident_root: self.incident_root,
+                roughness: [roughness; 2],
+                stretch: 1.0,
+                fresnel: self.fresnel().majorant().in_range(),
+            },
+            masking_shadowing: PhantomData,
+        }
     }
 }
 
@@ -111,92 +127,85 @@ impl<F: Fresnel, G: MaskingShadowing> ReceiverLobe for AnisotropicGgxLobe<F, G> 
         let (rougher, smoother) = (along.max(across), along.min(across));
         // That of the smoother roughness, with the root of this lobe for ω_i.
         let isotropic = self.at_any_azimuth().family();
-        GgxFamily::new(Numbers {
+        let ranges = Ranges {
             roughness: [rougher; 2],
             stretch: round_up(rougher / smoother, STRETCH_ROUNDINGS),
-            ..isotropic.numbers
-        })
-    }
-}
-
-impl<G> GgxFamily<G> {
-    fn new(numbers: Numbers) -> Self {
-        Self {
-            numbers,
-            masking_shadowing: PhantomData,
+            ..isotropic.ranges
+        };
+        GgxFamily {
+            ranges,
+            ..isotropic
         }
     }
 }
 
 impl<G: MaskingShadowing> LobeFamily for GgxFamily<G> {
-    type Sum = NumbersSum;
+    /// All but directions, and normals and incoming directions.
+    type Sum = (Ranges, [CapSum; 2]);
+    /// The same of their means.
+    type Mean = (Ranges, [CapMean; 2]);
+    type Reach = [CapReach; 2];
 
     #[inline(always)]
-    fn to_sum(&self) -> NumbersSum {
-        NumbersSum::of(&self.numbers)
-    }
-
-    #[inline(always)]
-    fn add_to(&self, sum: &mut NumbersSum) {
-        let numbers = &self.numbers;
-        if numbers.is_empty() {
-            return;
+    fn add_to(&self, (ranges, [normals, incoming]): &mut Self::Sum) {
+        if !self.ranges.is_empty() {
+            ranges.join(&self.ranges);
+            normals.add(&self.normals);
+            incoming.add(&self.incoming);
         }
-        if sum.numbers.is_empty() {
-            *sum = NumbersSum::of(numbers);
-            return;
-        }
-        sum.normals.add(&numbers.normals);
-        sum.incoming.add(&numbers.incoming);
-        sum.numbers.join_without_caps(numbers);
     }
 
-    fn mean(sum: &NumbersSum) -> Self {
-        Self::new(Numbers {
-            normals: sum.normals.mean(),
-            incoming: sum.incoming.mean(),
-            ..sum.numbers
-        })
+    fn mean((ranges, [normals, incoming]): &Self::Sum) -> Self::Mean {
+        (ranges.closed(), [normals.mean(), incoming.mean()])
     }
 
     #[inline(always)]
-    fn widen(&mut self, member: &Self) {
-        if !member.numbers.is_empty() {
-            self.numbers.normals.widen(&member.numbers.normals);
-            self.numbers.incoming.widen(&member.numbers.incoming);
+    fn widen(&self, (_, [normals, incoming]): &Self::Mean, reach: &mut Self::Reach) {
+        if !self.ranges.is_empty() {
+            normals.widen(&self.normals, &mut reach[0]);
+            incoming.widen(&self.incoming, &mut reach[1]);
+        }
+    }
+
+    fn around((ranges, [normals, incoming]): &Self::Mean, reach: &Self::Reach) -> Self {
+        Self {
+            normals: normals.cap(&reach[0]),
+            incoming: incoming.cap(&reach[1]),
+            ranges: *ranges,
+            masking_shadowing: PhantomData,
         }
     }
 
     #[inline(always)]
     fn majorant_in_lanes<N: Single>(&self, cap: &Caps<N>) -> Majorant<N> {
-        let numbers = &self.numbers;
-        let incident_cosine = cap.splat(numbers.incident_cosine);
+        let ranges = &self.ranges;
+        let incident_cosine = cap.splat(ranges.incident_cosine);
         let members = GgxMembers {
-            normals: numbers.normals.splat(incident_cosine),
-            incoming: numbers.incoming.splat(incident_cosine),
+            normals: self.normals.splat(incident_cosine),
+            incoming: self.incoming.splat(incident_cosine),
             incident_cosine,
-            incident_root: cap.splat(numbers.incident_root),
+            incident_root: cap.splat(ranges.incident_root),
         };
         members.majorant::<G>(
             #[inline(always)]
-            |[least_cosine, _]| numbers.fresnel.value(least_cosine),
+            |[least_cosine, _]| ranges.fresnel.value(least_cosine),
             #[inline(always)]
             |half_vectors| {
-                let [least, most] = numbers.roughness;
+                let [least, most] = ranges.roughness;
                 let range = [cap.splat(least * least), cap.splat(most * most)];
                 let mut ndf = members.ndf(
                     half_vectors,
                     #[inline(always)]
                     |sine| {
                         let worst = worst_alpha_squared(range, sine);
-                        [worst, worst * (1.0 / numbers.stretch)]
+                        [worst, worst * (1.0 / ranges.stretch)]
                     },
                 );
-                ndf.greatest = ndf.greatest * numbers.stretch;
+                ndf.greatest = ndf.greatest * ranges.stretch;
                 ndf
             },
             #[inline(always)]
-            |outgoing_cosine| masking_root(cap.splat(numbers.smoothest), outgoing_cosine),
+            |outgoing_cosine| masking_root(cap.splat(ranges.smoothest()), outgoing_cosine),
             cap,
         )
     }
@@ -214,12 +223,18 @@ impl<G> Copy for GgxFamily<G> {}
 
 impl<G> Debug for GgxFamily<G> {
     fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
-        self.numbers.fmt(formatter)
+        let Self {
+            normals,
+            incoming,
+            ranges,
+            ..
+        } = self;
+        (normals, incoming, ranges).fmt(formatter)
     }
 }
 
 impl<G> PartialEq for GgxFamily<G> {
     fn eq(&self, other: &Self) -> bool {
-        self.numbers == other.numbers
+        (self.normals, self.incoming, self.ranges) == (other.normals, other.incoming, other.ranges)
     }
 }

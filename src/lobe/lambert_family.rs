@@ -1,7 +1,7 @@
-use super::cap::CapSum;
+use super::cap_union::{CapMean, CapReach, CapSum};
 use super::lambert::lambert_majorant;
 use super::{Cap, Caps, LambertLobe, LobeFamily, Majorant, ReceiverLobe};
-use crate::num::Single;
+use crate::num::{Real, Single};
 
 /// What stands for many [`LambertLobe`]s: the greatest albedo, and a cap of normals.
 ///
@@ -30,37 +30,33 @@ impl ReceiverLobe for LambertLobe {
 impl LobeFamily for LambertFamily {
     /// The greatest albedo, and the normals.
     type Sum = (f32, CapSum);
+    /// The same of the normals' mean.
+    type Mean = (f32, CapMean);
+    type Reach = CapReach;
 
     #[inline(always)]
-    fn to_sum(&self) -> Self::Sum {
-        (self.albedo, CapSum::of(&self.normals))
+    fn add_to(&self, (albedo, normals): &mut Self::Sum) {
+        if self.albedo > 0.0 {
+            *albedo = Real::max(self.albedo, *albedo);
+            normals.add(&self.normals);
+        }
+    }
+
+    fn mean((albedo, normals): &Self::Sum) -> Self::Mean {
+        (*albedo, normals.mean())
     }
 
     #[inline(always)]
-    fn add_to(&self, sum: &mut Self::Sum) {
-        let (albedo, normals) = sum;
-        if self.albedo <= 0.0 {
-            return;
+    fn widen(&self, (_, normals): &Self::Mean, reach: &mut CapReach) {
+        if self.albedo > 0.0 {
+            normals.widen(&self.normals, reach);
         }
-        if *albedo <= 0.0 {
-            *sum = self.to_sum();
-            return;
-        }
-        *albedo = self.albedo.max(*albedo);
-        normals.add(&self.normals);
     }
 
-    fn mean((albedo, normals): &Self::Sum) -> Self {
+    fn around((albedo, normals): &Self::Mean, reach: &CapReach) -> Self {
         Self {
             albedo: *albedo,
-            normals: normals.mean(),
-        }
-    }
-
-    #[inline(always)]
-    fn widen(&mut self, member: &Self) {
-        if member.albedo > 0.0 {
-            self.normals.widen(&member.normals);
+            normals: normals.cap(reach),
         }
     }
 

@@ -1,8 +1,9 @@
 use glam::Vec3;
 
-use super::cap::CapSum;
+use super::cap_union::{CapMean, CapReach, CapSum};
 use super::ltc_lobes::LtcMembers;
 use super::{Cap, Caps, LobeFamily, LtcLobe, Majorant, ReceiverLobe};
+use crate::base::Direction;
 use crate::num::{Single, Vector3, round_down, round_up, sqrt_f64};
 
 /// Budget for lengths that are rounded to single precision.
@@ -57,13 +58,27 @@ impl LtcFamily {
 }
 
 /// The sum of families.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct LtcSum {
     normals: CapSum,
     rows: [Vec3; 3],
     count: f32,
     /// All but normals, rows and deviations.
     family: LtcFamily,
+}
+
+impl Default for LtcFamily {
+    /// The family of no lobe, to whose numbers any others are joined unchanged.
+    fn default() -> Self {
+        Self {
+            normals: Cap::of_axis(Direction::Z),
+            amplitude: 0.0,
+            rows: [Vec3::ZERO; 3],
+            deviations: [0.0; 2],
+            norms: [0.0; 2],
+            least_image: f32::MAX,
+        }
+    }
 }
 
 /// The greater of both, one by one.
@@ -96,22 +111,13 @@ impl ReceiverLobe for LtcLobe {
 
 impl LobeFamily for LtcFamily {
     type Sum = LtcSum;
-
-    fn to_sum(&self) -> LtcSum {
-        LtcSum {
-            normals: CapSum::of(&self.normals),
-            rows: self.rows,
-            count: 1.0,
-            family: *self,
-        }
-    }
+    /// A family without chords and deviations, and its normals.
+    type Mean = (Self, CapMean);
+    /// The reach of normals, and the deviations.
+    type Reach = (CapReach, [f32; 2]);
 
     fn add_to(&self, sum: &mut LtcSum) {
         if self.is_empty() {
-            return;
-        }
-        if sum.family.is_empty() {
-            *sum = self.to_sum();
             return;
         }
         sum.normals.add(&self.normals);
@@ -127,19 +133,26 @@ impl LobeFamily for LtcFamily {
         };
     }
 
-    fn mean(sum: &LtcSum) -> Self {
-        Self {
-            normals: sum.normals.mean(),
-            rows: sum.rows.map(|row| row / sum.count),
-            deviations: [0.0; 2],
+    fn mean(sum: &LtcSum) -> Self::Mean {
+        let family = Self {
+            rows: sum.rows.map(|row| row / sum.count.max(1.0)),
             ..sum.family
+        };
+        (family, sum.normals.mean())
+    }
+
+    fn widen(&self, (family, normals): &Self::Mean, reach: &mut Self::Reach) {
+        if !self.is_empty() {
+            normals.widen(&self.normals, &mut reach.0);
+            reach.1 = most(reach.1, self.deviations_from(family.rows));
         }
     }
 
-    fn widen(&mut self, member: &Self) {
-        if !member.is_empty() {
-            self.normals.widen(&member.normals);
-            self.deviations = most(self.deviations, member.deviations_from(self.rows));
+    fn around((family, normals): &Self::Mean, (of_normals, deviations): &Self::Reach) -> Self {
+        Self {
+            normals: normals.cap(of_normals),
+            deviations: *deviations,
+            ..*family
         }
     }
 

@@ -5,6 +5,8 @@ mod anisotropic_ggx;
 mod anisotropic_ggx_lobe;
 mod anisotropic_lobes;
 mod cap;
+mod cap_union;
+mod caps;
 mod conductor;
 mod constant;
 mod dielectric;
@@ -40,6 +42,7 @@ mod reflected_gaussian;
 mod spherical_gaussian;
 mod spot;
 mod sum;
+mod sum_family;
 mod von_mises_fisher;
 
 pub use anisotropic_gaussian::AnisotropicSphericalGaussian;
@@ -47,7 +50,7 @@ pub use anisotropic_ggx::AnisotropicGgx;
 pub use anisotropic_ggx_lobe::AnisotropicGgxLobe;
 pub(crate) use anisotropic_ggx_lobe::{SurfaceAxes, unit};
 pub use cap::Cap;
-pub(crate) use cap::Caps;
+pub(crate) use caps::Caps;
 pub use conductor::Conductor;
 pub use constant::ConstantLobe;
 pub use dielectric::Dielectric;
@@ -73,7 +76,8 @@ pub use phong_family::PhongFamily;
 pub use spherical_gaussian::SphericalGaussian;
 pub(crate) use spherical_gaussian::solid_angle;
 pub use spot::SpotLobe;
-pub use sum::{LobeSum, SumFamily};
+pub use sum::LobeSum;
+pub use sum_family::SumFamily;
 
 use glam::Vec3;
 

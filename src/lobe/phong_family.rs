@@ -1,6 +1,7 @@
-use super::cap::CapSum;
+use super::cap_union::{CapMean, CapReach, CapSum};
 use super::phong::PhongLobes;
 use super::{Cap, Caps, Lobe, LobeFamily, Majorant, PhongLobe, ReceiverLobe};
+use crate::base::Direction;
 use crate::num::{Real, Single, Vector3, ln_1p_f64};
 
 /// What stands for many [`PhongLobe`]s: the greatest albedo, caps of normals and mirror directions, and a range of
@@ -36,23 +37,28 @@ impl ReceiverLobe for PhongLobe {
     }
 }
 
+impl Default for PhongFamily {
+    /// The family of no lobe, to whose numbers any others are joined unchanged.
+    fn default() -> Self {
+        Self {
+            albedo: 0.0,
+            normals: Cap::of_axis(Direction::Z),
+            axes: Cap::of_axis(Direction::Z),
+            exponents: [f32::MAX, 0.0],
+        }
+    }
+}
+
 impl LobeFamily for PhongFamily {
     /// All numbers but the directions, and normals and axes.
     type Sum = (Self, [CapSum; 2]);
+    /// The same of their means.
+    type Mean = (Self, [CapMean; 2]);
+    type Reach = [CapReach; 2];
 
     #[inline(always)]
-    fn to_sum(&self) -> Self::Sum {
-        (*self, [CapSum::of(&self.normals), CapSum::of(&self.axes)])
-    }
-
-    #[inline(always)]
-    fn add_to(&self, sum: &mut Self::Sum) {
-        let (family, [normals, axes]) = sum;
+    fn add_to(&self, (family, [normals, axes]): &mut Self::Sum) {
         if self.albedo <= 0.0 {
-            return;
-        }
-        if family.albedo <= 0.0 {
-            *sum = self.to_sum();
             return;
         }
         let ([least, most], [own_least, own_most]) = (family.exponents, self.exponents);
@@ -65,19 +71,23 @@ impl LobeFamily for PhongFamily {
         axes.add(&self.axes);
     }
 
-    fn mean((family, [normals, axes]): &Self::Sum) -> Self {
-        Self {
-            normals: normals.mean(),
-            axes: axes.mean(),
-            ..*family
-        }
+    fn mean((family, [normals, axes]): &Self::Sum) -> Self::Mean {
+        (*family, [normals.mean(), axes.mean()])
     }
 
     #[inline(always)]
-    fn widen(&mut self, member: &Self) {
-        if member.albedo > 0.0 {
-            self.normals.widen(&member.normals);
-            self.axes.widen(&member.axes);
+    fn widen(&self, (_, [normals, axes]): &Self::Mean, reach: &mut Self::Reach) {
+        if self.albedo > 0.0 {
+            normals.widen(&self.normals, &mut reach[0]);
+            axes.widen(&self.axes, &mut reach[1]);
+        }
+    }
+
+    fn around((family, [normals, axes]): &Self::Mean, reach: &Self::Reach) -> Self {
+        Self {
+            normals: normals.cap(&reach[0]),
+            axes: axes.cap(&reach[1]),
+            ..*family
         }
     }
 

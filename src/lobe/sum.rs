@@ -1,8 +1,8 @@
 use glam::Vec3;
 
 use super::{
-    Cap, Caps, FIRST_NUMBERS, Lobe, LobeFamily, LobeNumbers, Majorant, ReceiverLobe,
-    majorant_per_lane, padded, value_per_lane,
+    Cap, Caps, FIRST_NUMBERS, Lobe, LobeNumbers, Majorant, majorant_per_lane, padded,
+    value_per_lane,
 };
 use crate::base::{Direction, Error, number_in};
 use crate::num::{Real, Single, Vector3};
@@ -274,7 +274,10 @@ fn weighted_bound<N: Single>([first, second]: [N; 2], weights: [N; 2]) -> N {
 }
 
 #[inline(always)]
-fn weighted_majorant<N: Single>(majorants: [Majorant<N>; 2], weights: [N; 2]) -> Majorant<N> {
+pub(super) fn weighted_majorant<N: Single>(
+    majorants: [Majorant<N>; 2],
+    weights: [N; 2],
+) -> Majorant<N> {
     let [first, second] = majorants;
     let greatest = weighted_bound([first.greatest, second.greatest], weights);
     let greatest = greatest.round_up(MAJORANT_ROUNDINGS);
@@ -285,85 +288,4 @@ fn weighted_majorant<N: Single>(majorants: [Majorant<N>; 2], weights: [N; 2]) ->
         greatest,
         typical: typical.min(greatest),
     }
-}
-
-/// What stands for many [`LobeSum`]s: a family of each lobe, and the greatest weights.
-///
-/// Its majorant is the weighted sum of both, which nests as they do. A lobe of weight zero is no member.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SumFamily<A, B> {
-    families: (A, B),
-    weights: [f32; 2],
-}
-
-impl<A: ReceiverLobe, B: ReceiverLobe> ReceiverLobe for LobeSum<A, B> {
-    type Family = SumFamily<A::Family, B::Family>;
-
-    #[inline(always)]
-    fn family(&self) -> Self::Family {
-        let (first, second) = &self.lobes;
-        SumFamily {
-            families: (first.family(), second.family()),
-            weights: self.weights,
-        }
-    }
-}
-
-impl<A: LobeFamily, B: LobeFamily> LobeFamily for SumFamily<A, B> {
-    /// The sums of both, and the greatest weights.
-    type Sum = (A::Sum, B::Sum, [f32; 2]);
-
-    #[inline(always)]
-    fn to_sum(&self) -> Self::Sum {
-        let (first, second) = &self.families;
-        (first.to_sum(), second.to_sum(), self.weights)
-    }
-
-    #[inline(always)]
-    fn add_to(&self, (of_first, of_second, weights): &mut Self::Sum) {
-        let (first, second) = &self.families;
-        add_weighted((first, self.weights[0]), of_first, &mut weights[0]);
-        add_weighted((second, self.weights[1]), of_second, &mut weights[1]);
-    }
-
-    fn mean((first, second, weights): &Self::Sum) -> Self {
-        Self {
-            families: (A::mean(first), B::mean(second)),
-            weights: *weights,
-        }
-    }
-
-    #[inline(always)]
-    fn widen(&mut self, member: &Self) {
-        if member.weights[0] > 0.0 {
-            self.families.0.widen(&member.families.0);
-        }
-        if member.weights[1] > 0.0 {
-            self.families.1.widen(&member.families.1);
-        }
-    }
-
-    #[inline(always)]
-    fn majorant_in_lanes<N: Single>(&self, cap: &Caps<N>) -> Majorant<N> {
-        let (first, second) = &self.families;
-        let majorants = [first.majorant_in_lanes(cap), second.majorant_in_lanes(cap)];
-        weighted_majorant(
-            majorants,
-            [cap.splat(self.weights[0]), cap.splat(self.weights[1])],
-        )
-    }
-}
-
-/// Adds a family with its weight to a sum. One of weight zero is no member.
-#[inline(always)]
-fn add_weighted<F: LobeFamily>((family, weight): (&F, f32), sum: &mut F::Sum, greatest: &mut f32) {
-    if weight <= 0.0 {
-        return;
-    }
-    if *greatest > 0.0 {
-        family.add_to(sum);
-    } else {
-        *sum = family.to_sum();
-    }
-    *greatest = greatest.max(weight);
 }

@@ -48,14 +48,14 @@ impl<F: LobeFamily> ReceiverCluster<F> {
     ///
     /// ```
     /// use stochastic_light_culling::{
-    ///     ConstantLobe, ReceiverCluster, ReceiverLobe, Roulette, Vpl, glam::Vec3,
+    ///     Blind, ConstantLobe, ReceiverCluster, Roulette, Vpl, glam::Vec3,
     /// };
     ///
     /// let light = Vpl::new(Vec3::ZERO, 1.0, ConstantLobe)?;
-    /// let receivers = [3.0, 5.0].map(|x| (Vec3::new(x, 0.0, 0.0), ConstantLobe.family()));
+    /// let receivers = [3.0, 5.0].map(|x| (Vec3::new(x, 0.0, 0.0), Blind));
     /// let cluster = ReceiverCluster::of(receivers.into_iter()).expect("there are two");
     /// let bound = cluster.greatest_radiance(&light, &Roulette::new(0.01)?, 0.0);
-    /// let at_three = ConstantLobe::PEAK * ConstantLobe::PEAK / (0.01 * 9.0);
+    /// let at_three = ConstantLobe::PEAK / (0.01 * 9.0);
     /// assert!((1.0..1.0001).contains(&(bound / at_three)));
     /// # Ok::<(), stochastic_light_culling::Error>(())
     /// ```

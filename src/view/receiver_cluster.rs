@@ -1,4 +1,4 @@
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use crate::base::{Error, number_in};
 use crate::lobe::LobeFamily;
@@ -13,10 +13,10 @@ const CENTER_ROUNDINGS: f32 = 4.0;
 /// [family](LobeFamily) of their lobes.
 ///
 /// ```
-/// use stochastic_light_culling::{ConstantLobe, ReceiverCluster, ReceiverLobe, glam::Vec3};
+/// use stochastic_light_culling::{Blind, ReceiverCluster, glam::Vec3};
 ///
 /// let positions = [Vec3::ZERO, Vec3::new(2.0, 0.0, 0.0)];
-/// let receivers = positions.iter().map(|position| (*position, ConstantLobe.family()));
+/// let receivers = positions.iter().map(|position| (*position, Blind));
 /// let cluster = ReceiverCluster::of(receivers).expect("there are two");
 /// assert_eq!(cluster.center(), Vec3::X);
 /// assert!((1.0..1.00001).contains(&cluster.radius()));
@@ -33,6 +33,43 @@ pub struct ReceiverCluster<F> {
     merges: u16,
 }
 
+/// What a first pass over receivers or clusters finds.
+#[derive(Clone, Copy)]
+struct Sum<S> {
+    /// The corners of their box.
+    min: Vec3A,
+    max: Vec3A,
+    len: u32,
+    families: S,
+}
+
+impl<S: Default> Default for Sum<S> {
+    fn default() -> Self {
+        Self {
+            min: Vec3A::MAX,
+            max: Vec3A::MIN,
+            len: 0,
+            families: S::default(),
+        }
+    }
+}
+
+impl<S> Sum<S> {
+    /// Adds `len` receivers in the box with these corners.
+    #[inline(always)]
+    fn add<F: LobeFamily<Sum = S>>(&mut self, [min, max]: [Vec3A; 2], len: u32, family: &F) {
+        self.min = self.min.min(min);
+        self.max = self.max.max(max);
+        self.len = self.len.saturating_add(len);
+        family.add_to(&mut self.families);
+    }
+
+    /// The centre of the box.
+    fn center(&self) -> Vec3A {
+        self.min.midpoint(self.max)
+    }
+}
+
 impl<F: LobeFamily> ReceiverCluster<F> {
     /// The cluster of receivers with these positions and lobes. `None` if there are none.
     ///
@@ -40,36 +77,42 @@ impl<F: LobeFamily> ReceiverCluster<F> {
     /// twice.
     #[must_use]
     pub fn of(receivers: impl Iterator<Item = (Vec3, F)> + Clone) -> Option<Self> {
+        let receivers = receivers.map(
+            #[inline(always)]
+            |(position, family)| (Vec3A::from(position), family),
+        );
         let receivers = receivers.filter(|(position, _)| position.is_finite());
-        let (first, family) = receivers.clone().next()?;
-        let (mut min, mut max, mut len) = (first, first, 1_u32);
-        let mut sum = family.to_sum();
-        // The iterator runs its own loops, which is faster for rows of pixels.
-        receivers.clone().skip(1).for_each(
+        // The iterator runs its own loops, which is faster for rows of pixels. What they change is passed from one to
+        // the next by value, so that it stays in registers.
+        let sum = receivers.clone().fold(
+            Sum::<F::Sum>::default(),
             #[inline(always)]
-            |(position, family)| {
-                (min, max) = (min.min(position), max.max(position));
-                family.add_to(&mut sum);
-                len = len.saturating_add(1);
+            |mut sum, (position, family)| {
+                sum.add([position; 2], 1, &family);
+                sum
             },
         );
-        let center = min.midpoint(max);
-        let mut family = F::mean(&sum);
-        let mut squared = 0.0_f32;
-        receivers.for_each(
+        if sum.len == 0 {
+            return None;
+        }
+        let (center, mean) = (sum.center(), F::mean(&sum.families));
+        let (squared, reach) = receivers.fold(
+            (0.0_f32, F::Reach::default()),
             #[inline(always)]
-            |(position, member)| {
-                squared = Real::max(center.distance_squared(position), squared);
-                family.widen(&member);
+            |(squared, mut reach), (position, family)| {
+                family.widen(&mean, &mut reach);
+                let own = center.distance_squared(position);
+                (Real::max(own, squared), reach)
             },
         );
+        let center = center.into();
         Some(Self {
             center,
             // Infinite where a square overflows.
             radius: enlarged(sqrt(squared), center),
-            family,
+            family: F::around(&mean, &reach),
             delta_scale: 1.0,
-            len,
+            len: sum.len,
             merges: 0,
         })
     }
@@ -79,30 +122,37 @@ impl<F: LobeFamily> ReceiverCluster<F> {
     /// Whatever light one of them may be lit by, this one may be lit by.
     #[must_use]
     pub fn union(clusters: impl Iterator<Item = Self> + Clone) -> Option<Self> {
-        let family = F::union(clusters.clone().map(|cluster| cluster.family))?;
-        let (mut min, mut max) = (Vec3::MAX, Vec3::MIN);
-        let (mut delta_scale, mut len, mut merges) = (f32::MAX, 0_u32, 0);
-        for cluster in clusters.clone() {
-            min = min.min(cluster.center - cluster.radius);
-            max = max.max(cluster.center + cluster.radius);
-            delta_scale = delta_scale.min(cluster.delta_scale);
-            len = len.saturating_add(cluster.len);
+        let mut sum = Sum::<F::Sum>::default();
+        let (mut delta_scale, mut merges) = (f32::MAX, 0);
+        clusters.clone().for_each(|cluster| {
+            let center = Vec3A::from(cluster.center);
+            let corners = [center - cluster.radius, center + cluster.radius];
+            sum.add(corners, cluster.len, &cluster.family);
+            delta_scale = Real::min(cluster.delta_scale, delta_scale);
             merges = merges.max(cluster.merges);
+        });
+        if sum.len == 0 {
+            return None;
         }
-        let center = min.midpoint(max);
+        let center = sum.center();
         let center = if center.is_finite() {
             center
         } else {
-            Vec3::ZERO
+            Vec3A::ZERO
         };
-        let radii = clusters.map(|cluster| center.distance(cluster.center) + cluster.radius);
-        let radius = radii.fold(0.0, f32::max);
+        let mean = F::mean(&sum.families);
+        let (mut radius, mut reach) = (0.0, F::Reach::default());
+        clusters.for_each(|cluster| {
+            cluster.family.widen(&mean, &mut reach);
+            let own = center.distance(cluster.center.into()) + cluster.radius;
+            radius = Real::max(own, radius);
+        });
         Some(Self {
-            center,
-            radius: enlarged(radius, center),
-            family,
+            center: center.into(),
+            radius: enlarged(radius, center.into()),
+            family: F::around(&mean, &reach),
             delta_scale,
-            len,
+            len: sum.len,
             merges: merges + 1,
         })
     }

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use fastrand::Rng;
 use stochastic_light_culling::{
     AnisotropicGgx, AnisotropicGgxLobe, Ggx, GgxLobe, Incidence, LambertLobe, LobeSum, LtcLobe,
-    NoFresnel, PhongLobe, SphericalGaussian, SpotLobe,
+    PhongLobe, SphericalGaussian, SpotLobe,
 };
 use support::adversary::{
     chance, cone_angles, direction, exponent, fresnel, log_uniform, sharpness, unit_vector,
@@ -129,27 +129,23 @@ fn members<L>(rng: &mut Rng, make: impl Fn(&mut Rng, &Lit) -> Member<L>) -> Vec<
 pub fn ggx<G>(rng: &mut Rng, masking: Masking) -> Vec<Member<GgxLobe<GivenFresnel, G>>> {
     let (alpha, fresnel) = (shares(rng, 1e-4), fresnels(rng));
     members(rng, |rng, lit| {
-        let (roughness, fresnel) = (alpha(rng), fresnel(rng));
-        let ggx = Ggx::new(roughness).expect("in range");
-        let lobe = GgxLobe::new(ggx, given(fresnel), incidence(lit)).with_masking();
-        let brdf = Brdf::Ggx {
-            roughness,
-            fresnel,
-            masking,
-        };
-        Member::new(lobe, lit, brdf)
+        ggx_of((alpha(rng), fresnel(rng), masking), lit)
     })
 }
 
-/// A lobe of this roughness, without a Fresnel factor.
-pub fn polished(roughness: f32, lit: &Lit) -> Member<GgxLobe> {
+/// The lobe of this roughness, Fresnel factor and masking.
+pub fn ggx_of<G>(
+    (roughness, fresnel, masking): (f32, Fresnel, Masking),
+    lit: &Lit,
+) -> Member<GgxLobe<GivenFresnel, G>> {
     let ggx = Ggx::new(roughness).expect("in range");
+    let lobe = GgxLobe::new(ggx, given(fresnel), incidence(lit)).with_masking();
     let brdf = Brdf::Ggx {
         roughness,
-        fresnel: Fresnel::None,
-        masking: Masking::HeightCorrelated,
+        fresnel,
+        masking,
     };
-    Member::new(GgxLobe::new(ggx, NoFresnel, incidence(lit)), lit, brdf)
+    Member::new(lobe, lit, brdf)
 }
 
 pub fn anisotropic<G>(
