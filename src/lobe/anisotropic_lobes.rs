@@ -1,7 +1,6 @@
 //! The formulas of [`AnisotropicGgxLobe`](super::AnisotropicGgxLobe), for one lobe in each lane.
 
 use super::anisotropic_ggx::{anisotropic_masking_root, anisotropic_ndf, ndf_of_scaled_sine};
-use super::fresnel::quasi_convex_maximum;
 use super::ggx_majorant::GgxMembers;
 use super::{Caps, FIRST_NUMBERS, GgxLobes, LobeNumbers, Majorant, MaskingShadowing};
 use crate::num::{Matrix3, Single, Vector3};
@@ -41,10 +40,6 @@ pub(super) fn anisotropic_value<N: Single, G: MaskingShadowing>(
 /// The majorant of [`anisotropic_value`] within a cap.
 ///
 /// The root √(α_x²x² + α_y²y² + z²) is least where each coordinate is.
-#[expect(
-    clippy::redundant_closure,
-    reason = "a reference to a closure is called, not inlined"
-)]
 #[inline(always)]
 pub(super) fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
     at_any_azimuth: &GgxLobes<N>,
@@ -54,15 +49,8 @@ pub(super) fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
     cap: &Caps<N>,
 ) -> Majorant<N> {
     let members = GgxMembers::one(at_any_azimuth);
-    members.majorant::<G>(
-        #[inline(always)]
-        |cosines| {
-            quasi_convex_maximum(
-                #[inline(always)]
-                |cosine| reflectance(cosine),
-                cosines,
-            )
-        },
+    members.majorant_of_one::<G>(
+        reflectance,
         #[inline(always)]
         |half_vectors| {
             let factors = roughness.map(

@@ -1,6 +1,6 @@
 //! The formulas of [`GgxLobe`](super::GgxLobe), for one lobe in each lane.
 
-use super::fresnel::{LEAST_REFLECTED, quasi_convex_maximum};
+use super::fresnel::LEAST_REFLECTED;
 use super::ggx::{masking_root, ndf_at};
 use super::ggx_majorant::GgxMembers;
 use super::{Caps, Fresnel, LobeNumbers, Majorant, MaskingShadowing};
@@ -217,10 +217,6 @@ impl<N: Single> GgxLobes<N> {
     }
 
     /// The majorant within a cap, where `reflectance` is F as a function of cosθ_h.
-    #[expect(
-        clippy::redundant_closure,
-        reason = "a reference to a closure is called, not inlined"
-    )]
     #[inline(always)]
     pub fn majorant<G: MaskingShadowing>(
         &self,
@@ -229,15 +225,8 @@ impl<N: Single> GgxLobes<N> {
     ) -> Majorant<N> {
         let members = GgxMembers::one(self);
         let alpha_squared = self.roughness * self.roughness;
-        members.majorant::<G>(
-            #[inline(always)]
-            |cosines| {
-                quasi_convex_maximum(
-                    #[inline(always)]
-                    |cosine| reflectance(cosine),
-                    cosines,
-                )
-            },
+        members.majorant_of_one::<G>(
+            reflectance,
             #[inline(always)]
             |half_vectors| {
                 members.ndf(

@@ -21,7 +21,7 @@
 //!
 //! G2/(4μ_i) is bounded by its value for μ, Λ, m, and the root of m for α₀, since it falls with μ_i and with both
 //! roots, and grows with μ_o ([`MaskingShadowing`]), and since the root √(μ² + α²(1 − μ²)) grows with α. On an
-//! anisotropic surface the root is at least that for the lesser of α_x and α_y.
+//! anisotropic surface the root is at least that for the lesser of α_x and α_y, which is at least α₀/κ for a family.
 //!
 //! The product of the three bounds is the majorant. As the chords close it becomes the lobe itself.
 //!
@@ -43,6 +43,7 @@
 //! It takes the sine, the cosines and the Fresnel factor of the middle, and the NDF that is filtered as for a
 //! Gaussian spread of half vectors: α̂² + ½(c/‖h‖ + c_n)², with the α̂ of the bound, or α_xα_y.
 
+use super::fresnel::quasi_convex_maximum;
 use super::ggx::ndf_of_sine;
 use super::half_vectors::HalfVectors;
 use super::{Caps, GgxLobes, Majorant, MaskingShadowing};
@@ -109,6 +110,35 @@ impl<N: Single> GgxMembers<N> {
         let typical = Real::max(typical, least).min(greatest);
         let [greatest, typical] = N::select_all(is_lit, [greatest, typical], [zero; 2]);
         Majorant { greatest, typical }
+    }
+
+    /// The majorant of one lobe within a cap, where `reflectance` is F as a function of cosθ_h; else as
+    /// [`majorant`](Self::majorant).
+    #[expect(
+        clippy::redundant_closure,
+        reason = "a reference to a closure is called, not inlined"
+    )]
+    #[inline(always)]
+    pub fn majorant_of_one<G: MaskingShadowing>(
+        &self,
+        reflectance: impl Fn(N) -> N,
+        ndf: impl FnOnce(&HalfVectors<N>) -> Majorant<N>,
+        masking_root: impl Fn(N) -> N,
+        cap: &Caps<N>,
+    ) -> Majorant<N> {
+        self.majorant::<G>(
+            #[inline(always)]
+            |cosines| {
+                quasi_convex_maximum(
+                    #[inline(always)]
+                    |cosine| reflectance(cosine),
+                    cosines,
+                )
+            },
+            ndf,
+            masking_root,
+            cap,
+        )
     }
 
     /// G2/(4μ_i) for a μ_o and its root.

@@ -2,6 +2,7 @@
 #![cfg(feature = "cull")]
 
 mod case;
+mod frames;
 mod lists;
 mod scene;
 mod unbiased;

@@ -4,7 +4,7 @@ use fearless_simd::{Level, dispatch};
 
 use super::lists::WeightedLists;
 use super::tiles::TileReceivers;
-use super::walk::{MayBeAccepted, Output, PieceLists, Rule, Scene};
+use super::walk::{Block, MayBeAccepted, Output, PieceLists, Rule, Scene};
 use crate::base::{Error, number_in};
 use crate::cull::culler::{at_most, widest};
 use crate::cull::{LightLists, ShadingBatch};
@@ -124,10 +124,9 @@ impl ReceiverCuller {
         tiles: &TileReceivers<F>,
         lists: &mut LightLists,
     ) -> Result<(), Error> {
-        let mut output = WeightedLists::of_lists(core::mem::take(lists));
-        let result = self.write(MayBeAccepted, lights, tiles, &mut output);
-        *lists = output.into_lists();
-        result
+        WeightedLists::without_weights(lists, |lists| {
+            self.write(MayBeAccepted, lights, tiles, lists)
+        })
     }
 
     /// Fills `lists` with the lights that are drawn for all receivers of a tile, and their weights 1/p_T: those for
@@ -154,16 +153,26 @@ impl ReceiverCuller {
         lists: &mut WeightedLists,
     ) -> Result<(), Error> {
         lists.reset(tiles);
-        self.pair_tests = 0;
         self.number(lights.len());
         let scene = self.scene(rule, lights, tiles);
         let all = &self.lights[..lights.len()];
         let steps = tiles.levels_of_blocks() + 1;
         self.scratch
             .resize_with(steps.max(self.scratch.len()), PieceLists::default);
-        let (scratch, pair_tests) = (&mut self.scratch[..steps], &mut self.pair_tests);
-        let mut output = Output { lists, tiles: None };
-        dispatch!(self.level, simd => scene.walk(simd, tiles.root(), all, scratch, &mut output, pair_tests));
+        let mut output = Output {
+            lists,
+            tiles: None,
+            pair_tests: 0,
+        };
+        dispatch!(self.level, simd => {
+            let block = Block {
+                node: tiles.root(),
+                lights: all,
+                scratch: &mut self.scratch[..steps],
+            };
+            scene.walk(simd, block, &mut output);
+        });
+        self.pair_tests = output.pair_tests;
         lists.finish(tiles)
     }
 

@@ -49,17 +49,18 @@ impl WeightedLists {
         }
     }
 
-    /// Lists that will have no weights.
-    pub(super) fn of_lists(lists: LightLists) -> Self {
-        Self {
-            lists,
+    /// Lets `write` fill `lists`, which get no weights.
+    pub(super) fn without_weights(
+        lists: &mut LightLists,
+        write: impl FnOnce(&mut Self) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        let mut weighted = Self {
+            lists: core::mem::take(lists),
             weights: Vec::new(),
-        }
-    }
-
-    /// The lists without weights.
-    pub(super) fn into_lists(self) -> LightLists {
-        self.lists
+        };
+        let result = write(&mut weighted);
+        *lists = weighted.lists;
+        result
     }
 
     /// Clears the lists and creates an empty one for each slot of `tiles`.

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::culler::ReceiverCuller;
 use super::lists::WeightedLists;
 use super::tiles::{Node, TileReceivers};
-use super::walk::{MayBeAccepted, Output, PieceLists, Rule, Scene};
+use super::walk::{Block, MayBeAccepted, Output, PieceLists, Rule, Scene};
 use crate::base::Error;
 use crate::cull::{LightLists, ShadingBatch};
 use crate::light::TileProbability;
@@ -45,16 +45,23 @@ impl Worker {
         } = self;
         lists.reset_to(scene.tiles.most_tiles(*node));
         tiles.clear();
-        *pair_tests = 0;
         // One for the parts of a tile, one for each level of blocks, and one for the lights of the block itself.
         let steps = node.level - scene.tiles.level_of_tiles() + 2;
         scratch.resize_with(steps.max(scratch.len()), PieceLists::default);
-        let (node, scratch) = (*node, &mut scratch[..steps]);
         let mut output = Output {
             lists,
             tiles: Some(tiles),
+            pair_tests: 0,
         };
-        dispatch!(level, simd => scene.enter(simd, node, lights, scratch, &mut output, pair_tests));
+        dispatch!(level, simd => {
+            let block = Block {
+                node: *node,
+                lights,
+                scratch: &mut scratch[..steps],
+            };
+            scene.enter(simd, block, &mut output);
+        });
+        *pair_tests = output.pair_tests;
     }
 }
 
@@ -74,10 +81,9 @@ impl ReceiverCuller {
         tiles: &TileReceivers<F>,
         lists: &mut LightLists,
     ) -> Result<(), Error> {
-        let mut output = WeightedLists::of_lists(core::mem::take(lists));
-        let result = self.write_in_parallel(MayBeAccepted, lights, tiles, &mut output);
-        *lists = output.into_lists();
-        result
+        WeightedLists::without_weights(lists, |lists| {
+            self.write_in_parallel(MayBeAccepted, lights, tiles, lists)
+        })
     }
 
     /// Does what [`draw`](Self::draw) does on the threads of rayon's current pool. The lists are the same, in another

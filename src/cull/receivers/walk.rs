@@ -64,11 +64,22 @@ pub(super) struct Scene<'a, L, F, R> {
     pub rule: R,
 }
 
+/// A block of tiles, and what its lists are made of.
+pub(super) struct Block<'a> {
+    pub node: Node,
+    /// The lights that may light it.
+    pub lights: &'a [u32],
+    /// One element for each level of blocks from that of the node down, after one for the parts of a tile.
+    pub scratch: &'a mut [PieceLists],
+}
+
 /// Where the lists of tiles are written.
 pub(super) struct Output<'a> {
     pub lists: &'a mut WeightedLists,
     /// The tiles of the lists, if these are in the order in which they are written. Else each list is in its place.
     pub tiles: Option<&'a mut Vec<usize>>,
+    /// How many pairs of a light and a cluster have been tested.
+    pub pair_tests: u64,
 }
 
 impl Output<'_> {
@@ -126,46 +137,45 @@ impl PieceLists {
 }
 
 impl<L: Lobe, F: LobeFamily, R: Rule> Scene<'_, L, F, R> {
-    /// Writes the lists of all tiles of `node`, a block, for those of the lights that may light it.
+    /// Writes the lists of all tiles of a block, of whose lights not all may light it. One more element of `scratch`
+    /// is for those that may.
     #[cfg(feature = "rayon")]
-    pub fn enter<S: Simd>(
-        &self,
-        simd: S,
-        node: Node,
-        lights: &[u32],
-        scratch: &mut [PieceLists],
-        output: &mut Output,
-        pair_tests: &mut u64,
-    ) {
+    pub fn enter<S: Simd>(&self, simd: S, block: Block, output: &mut Output) {
+        let Block {
+            node,
+            lights,
+            scratch,
+        } = block;
         let Some((own, scratch)) = scratch.split_last_mut() else {
             return;
         };
         own.begin([node].into_iter(), lights.len(), false);
-        *pair_tests += lights.len() as u64;
+        output.pair_tests += lights.len() as u64;
         simd.vectorize(
             #[inline(always)]
             || self.choose::<_, _, false>(simd, lights, own, MayBeAccepted),
         );
         let lights = &own.lights[..own.lens[0]];
-        self.walk(simd, node, lights, scratch, output, pair_tests);
+        let block = Block {
+            node,
+            lights,
+            scratch,
+        };
+        self.walk(simd, block, output);
     }
 
-    /// Writes the lists of all tiles of `node` for these of the lights. `scratch` has one element for each level of
-    /// blocks from that of the node down, after one for the parts of a tile.
-    pub fn walk<S: Simd>(
-        &self,
-        simd: S,
-        node: Node,
-        lights: &[u32],
-        scratch: &mut [PieceLists],
-        output: &mut Output,
-        pair_tests: &mut u64,
-    ) {
+    /// Writes the lists of all tiles of a block.
+    pub fn walk<S: Simd>(&self, simd: S, block: Block, output: &mut Output) {
+        let Block {
+            node,
+            lights,
+            scratch,
+        } = block;
         let Some((own, scratch)) = scratch.split_last_mut() else {
             return;
         };
         own.begin(self.tiles.pieces(node), lights.len(), R::WEIGHS);
-        *pair_tests += (own.nodes.len() * lights.len()) as u64;
+        output.pair_tests += (own.nodes.len() * lights.len()) as u64;
         let level_of_tiles = self.tiles.level_of_tiles();
         let are_tiles = node.level == level_of_tiles + 1;
         let are_divided = level_of_tiles > 0;
@@ -186,11 +196,16 @@ impl<L: Lobe, F: LobeFamily, R: Rule> Scene<'_, L, F, R> {
                 continue;
             }
             if !are_tiles {
-                self.walk(simd, *node, lights, scratch, output, pair_tests);
+                let block = Block {
+                    node: *node,
+                    lights,
+                    scratch: &mut *scratch,
+                };
+                self.walk(simd, block, output);
             } else if are_divided {
                 let refined = &mut scratch[0];
                 refined.begin([*node].into_iter(), len, R::WEIGHS);
-                *pair_tests += (self.tiles.undivided(*node).count() * len) as u64;
+                output.pair_tests += (self.tiles.undivided(*node).count() * len) as u64;
                 simd.vectorize(
                     #[inline(always)]
                     || self.choose::<_, _, true>(simd, lights, refined, self.rule),
@@ -248,6 +263,7 @@ impl<L: Lobe, F: LobeFamily, R: Rule> Scene<'_, L, F, R> {
             }
         }
     }
+
     /// c/δ of the light in each lane over the receivers of all `clusters`.
     #[inline(always)]
     fn radiance<'c, 'l, N: Single>(
