@@ -84,6 +84,7 @@ impl Conductor {
 }
 
 impl Fresnel for Conductor {
+    const HAS_VALID_MAJORANT: bool = true;
     const IS_IN_LANES: bool = true;
 
     #[inline]

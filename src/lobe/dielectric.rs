@@ -48,6 +48,7 @@ impl Dielectric {
 }
 
 impl Fresnel for Dielectric {
+    const HAS_VALID_MAJORANT: bool = true;
     const IS_IN_LANES: bool = true;
 
     #[inline]

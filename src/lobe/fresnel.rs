@@ -68,6 +68,10 @@ pub trait Fresnel: Copy + 'static {
         }
     }
 
+    /// Whether `majorant` is known to be one, whatever the numbers of this factor.
+    #[doc(hidden)]
+    const HAS_VALID_MAJORANT: bool = false;
+
     /// Whether `reflectance_in_lanes` is implemented, and `maximum` is not.
     #[doc(hidden)]
     const IS_IN_LANES: bool = false;
@@ -144,14 +148,20 @@ pub struct FresnelMajorant {
 }
 
 impl FresnelMajorant {
-    /// The same majorant with numbers in range, and greater ones in place of NaN.
+    /// The majorant of `fresnel`, or 1 where a caller's numbers are none.
     #[inline(always)]
-    pub(super) fn in_range(self) -> Self {
-        let base = Real::min(self.base, 1.0);
-        let rise = Real::min(self.rise, f32::MAX);
-        Self {
-            base: Real::max(base, LEAST_REFLECTED),
-            rise: Real::max(rise, 0.0),
+    pub(super) fn of_any<F: Fresnel>(fresnel: &F) -> Self {
+        let majorant = fresnel.majorant();
+        let Self { base, rise } = majorant;
+        let is_valid =
+            F::HAS_VALID_MAJORANT || base >= LEAST_REFLECTED && (0.0..=f32::MAX).contains(&rise);
+        if is_valid {
+            majorant
+        } else {
+            Self {
+                base: 1.0,
+                rise: 0.0,
+            }
         }
     }
 
@@ -213,6 +223,8 @@ impl FresnelMajorant {
 pub struct NoFresnel;
 
 impl Fresnel for NoFresnel {
+    const HAS_VALID_MAJORANT: bool = true;
+
     #[inline]
     fn reflectance(&self, _half_angle_cosine: f32) -> f32 {
         1.0
@@ -272,6 +284,7 @@ impl Schlick {
 }
 
 impl Fresnel for Schlick {
+    const HAS_VALID_MAJORANT: bool = true;
     const IS_IN_LANES: bool = true;
 
     #[inline]

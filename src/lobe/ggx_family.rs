@@ -111,7 +111,7 @@ impl<F: Fresnel, G: MaskingShadowing> ReceiverLobe for GgxLobe<F, G> {
                 incident_root: self.incident_root,
                 roughness: [roughness; 2],
                 stretch: 1.0,
-                fresnel: self.fresnel().majorant().in_range(),
+                fresnel: FresnelMajorant::of_any(self.fresnel()),
             },
             masking_shadowing: PhantomData,
         }
