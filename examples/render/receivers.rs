@@ -117,11 +117,7 @@ impl Palette for Colors<'_> {
 
 /// The ways to draw lights, by the names that they have in the table.
 fn ways() -> [(&'static str, Roulettes, bool); 4] {
-    let way = |known, decided| Roulettes {
-        known,
-        decided,
-        own_delta: false,
-    };
+    let way = |known, decided| Roulettes { known, decided };
     let by_tile = Decided::ByTile(TileProbability::default());
     [
         ("blind", way(Known::Nothing, Decided::ByPixel), true),
@@ -179,6 +175,7 @@ pub fn measure(arguments: &Arguments, view: &View) -> Result<Vec<Row>, String> {
                     })
                     .collect(),
             },
+            before: None,
         };
         scenery.light(roulettes, Division { tiles, parts: 1 })
     };

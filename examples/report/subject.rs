@@ -13,6 +13,9 @@ use crate::study::DELTA;
 pub struct Effort {
     pub size: [u32; 2],
     pub vpls: u32,
+    /// The size of pictures of receivers, and about how many lights they have.
+    pub size_of_receivers: [u32; 2],
+    pub lights_of_receivers: u32,
     /// How often a frame is repeated with other random numbers.
     pub seeds: u32,
     /// How often a time is taken.
@@ -26,6 +29,8 @@ impl Effort {
     pub const FULL: Self = Self {
         size: [400, 224],
         vpls: 16384,
+        size_of_receivers: [960, 540],
+        lights_of_receivers: 16384,
         seeds: 64,
         times: 5,
         truth: [16, 65536],
@@ -34,6 +39,8 @@ impl Effort {
     pub const QUICK: Self = Self {
         size: [128, 72],
         vpls: 2048,
+        size_of_receivers: [128, 72],
+        lights_of_receivers: 2048,
         seeds: 4,
         times: 1,
         truth: [4, 8192],
@@ -104,11 +111,27 @@ impl<'a> Subject<'a> {
 
     /// The same scene in a picture of half the width and height.
     pub fn half_as_large(&self) -> Self {
-        let effort = Effort {
+        self.with(Effort {
             size: self.effort.size.map(|n| n / 2),
             ..self.effort
-        };
-        Self::new(self.name, self.scene, effort, self.seed).expect("it was seen in more pixels")
+        })
+    }
+
+    /// The same scene as the paper has it: of 65,536 lights at 1920×1080 a subregion of 8×8 has 1024, at 240×135 pixels.
+    /// So has one of 4×4 here, of a quarter of both.
+    pub fn as_in_paper(&self) -> Self {
+        let effort = self.effort;
+        let points = self.points(Gloss::new(0.1, 0.9), effort.vpls, self.seed_of(0));
+        let rays_per_light = f64::from(effort.vpls) / points.glossy.len() as f64;
+        self.with(Effort {
+            size: effort.size_of_receivers,
+            vpls: (rays_per_light * f64::from(effort.lights_of_receivers)) as u32,
+            ..effort
+        })
+    }
+
+    fn with(&self, effort: Effort) -> Self {
+        Self::new(self.name, self.scene, effort, self.seed).expect("another size sees it, too")
     }
 
     /// The seed of a repetition, of which no two studies of one subject share any by chance.

@@ -9,7 +9,8 @@ use crate::num::Real;
 /// bright ones take most of the work. With δ·L/L₀, where L₀ is a typical radiance, both are what they would be at L₀,
 /// everywhere.
 ///
-/// The scale is for [`ReceiverCluster::with_delta_scale`](crate::ReceiverCluster::with_delta_scale).
+/// The scale is for [`ReceiverCluster::with_delta_scale`](crate::ReceiverCluster::with_delta_scale). Where p is that of
+/// [`Blind`](crate::Blind), L is still what receivers reflect: measured, that is no worse than what arrives.
 ///
 /// # Unbiased or not
 ///

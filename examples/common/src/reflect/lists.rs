@@ -7,6 +7,7 @@ use stochastic_light_culling::{
     ShadingBatch, Tight, TileProbability, TileReceivers, WeightedLists, glam::Vec3,
 };
 
+use super::even::DeltaScales;
 use super::shade::{Lights, shade};
 use super::{Division, Palette, Receiving, Reflected, Scenery};
 use crate::frame::{GlossyLight, Subregion, Tiles, timed};
@@ -34,8 +35,6 @@ pub enum Decided {
 pub struct Roulettes {
     pub known: Known,
     pub decided: Decided,
-    /// Whether a tile that decides has a δ in proportion to what it reflects, so that noise is even to the eye.
-    pub own_delta: bool,
 }
 
 /// The lights of a subregion.
@@ -101,11 +100,23 @@ pub(super) fn light<R: Receiving, P: Palette>(
         }
         (Known::Nothing, _) => {
             let family = |_: &R| Blind;
-            list(scenery, roulettes, division, &own, &mut listings, family)?
+            list(
+                scenery,
+                roulettes.decided,
+                division,
+                &own,
+                &mut listings,
+                family,
+            )?
         }
-        (Known::Receivers, _) => {
-            list(scenery, roulettes, division, &own, &mut listings, R::family)?
-        }
+        (Known::Receivers, _) => list(
+            scenery,
+            roulettes.decided,
+            division,
+            &own,
+            &mut listings,
+            R::family,
+        )?,
     };
 
     let mut image = Reflected::black(scenery.receivers.len());
@@ -176,9 +187,7 @@ pub(super) fn lights_to_accept<R: Receiving, P: Palette>(
 /// cull.
 fn list<R: Receiving, P: Palette, F: LobeFamily>(
     scenery: &Scenery<R, P>,
-    Roulettes {
-        decided, own_delta, ..
-    }: Roulettes,
+    decided: Decided,
     division: Division,
     own: &[Own],
     listings: &mut [Listing],
@@ -196,17 +205,16 @@ fn list<R: Receiving, P: Palette, F: LobeFamily>(
         .iter()
         .map(empty)
         .collect::<Result<Vec<_>, _>>()?;
-    let (filled, build_ms) = timed(|| {
+    let ((), build_ms) = timed(|| {
+        let scales = scenery
+            .before
+            .map(|picture| DeltaScales::new(scenery.frame, division.tiles, picture));
         let tiles = tiles.par_iter_mut().zip(subregions).enumerate();
-        tiles.try_for_each(|(i, (tiles, subregion))| {
+        tiles.for_each(|(i, (tiles, subregion))| {
             let place = (i as u32, subregion);
-            let scales = own_delta.then(|| delta_scales(scenery, place, &own[i].batch));
-            let scales = scales.transpose()?;
-            fill(scenery, place, tiles, &family, scales.as_deref());
-            Ok::<(), Error>(())
-        })
+            fill(scenery, place, tiles, &family, scales.as_ref());
+        });
     });
-    filled?;
     let mut cull = || {
         let listings = listings.par_iter_mut().zip(&tiles).zip(own);
         listings.try_for_each(|((listing, tiles), own)| {
@@ -236,7 +244,7 @@ fn fill<R: Receiving, P: Palette, F: LobeFamily>(
     (index, subregion): (u32, &Subregion),
     tiles: &mut TileReceivers<F>,
     family: impl Fn(&R) -> F,
-    scales: Option<&[f32]>,
+    scales: Option<&DeltaScales>,
 ) {
     let (frame, parts) = (scenery.frame, tiles.parts_grid());
     let parts_in_tile = subregion.grid.tile_size() / parts.tile_size();
@@ -260,69 +268,11 @@ fn fill<R: Receiving, P: Palette, F: LobeFamily>(
             let (own, position, family) = receivers[(y * width + x) as usize]?;
             (own == interval).then_some((position, family))
         }))?;
-        let scale = scales.map(|scales| scales[slot(subregion, tile, interval)]);
-        match scale {
-            Some(scale) => cluster.with_delta_scale(scale).ok(),
+        match scales {
+            Some(scales) => cluster.with_delta_scale(scales.of(tile, interval)).ok(),
             None => Some(cluster),
         }
     });
-}
-
-/// The place of a depth interval of a tile among those of all tiles.
-fn slot(Subregion { grid, depths }: &Subregion, [x, y]: [u32; 2], interval: u32) -> usize {
-    ((y * grid.size()[0] + x) * depths.intervals() + interval) as usize
-}
-
-/// For each depth interval of each tile, δ over that of the frame: what a receiver in its middle reflects of some of the
-/// lights, over the mean of all tiles.
-///
-/// No ξ has a part in it, so that every estimate stays exact in the mean.
-fn delta_scales<R: Receiving, P: Palette>(
-    scenery: &Scenery<R, P>,
-    (index, subregion): (u32, &Subregion),
-    lights: &ShadingBatch<GgxLobe<Schlick>>,
-) -> Result<Vec<f32>, Error> {
-    /// One light in so many is looked at.
-    const STRIDE: usize = 4;
-    /// What a tile reflects besides, over the mean: a few lights may show nothing of it.
-    const FLOOR: f32 = 0.05;
-    let frame = scenery.frame;
-    let Subregion { grid, depths } = subregion;
-    let mut middles = Vec::new();
-    for tile in grid.tiles() {
-        for interval in 0..depths.intervals() {
-            let is_seen = |pixel: &[u32; 2]| {
-                let pixel = frame.interleave.join_pixel(index, *pixel);
-                depths.interval_of(tile, frame.surfaces.at(pixel).depth) == Some(interval)
-            };
-            let pixels: Vec<[u32; 2]> = grid.pixels(tile).pixels().filter(is_seen).collect();
-            if let Some(pixel) = pixels.get(pixels.len() / 2) {
-                let pixel = frame.interleave.join_pixel(index, *pixel);
-                let receiver = scenery.receivers[frame.surfaces.index(pixel)].as_ref();
-                middles.extend(receiver.map(|r| (slot(subregion, tile, interval), r)));
-            }
-        }
-    }
-    // So small that all lights are accepted.
-    let estimator = RadianceEstimator::new(&Roulette::new(1e-30)?);
-    let estimator = estimator.with_least_distance_squared(frame.least_distance_squared)?;
-    let some: Vec<u32> = (0..lights.len() as u32).step_by(STRIDE).collect();
-    let mut sums = vec![0.0; middles.len()];
-    let receivers = middles
-        .iter()
-        .map(|(_, receiver)| ((*receiver).clone(), &*some));
-    estimator.fold_reflected_at_points(lights, receivers, (), |(), turn, _, reflected| {
-        sums[turn] += reflected;
-    });
-    let mean = sums.iter().sum::<f32>() / sums.len().max(1) as f32;
-    let [columns, rows] = grid.size();
-    let mut scales = vec![1.0; (columns * rows * depths.intervals()) as usize];
-    for ((slot, _), sum) in middles.iter().zip(sums) {
-        if mean > 0.0 {
-            scales[*slot] = (sum / mean + FLOOR).min(1e6);
-        }
-    }
-    Ok(scales)
 }
 
 fn own_lights<R, P>(scenery: &Scenery<R, P>, subregion: u32) -> Own {

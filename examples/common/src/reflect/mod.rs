@@ -1,6 +1,7 @@
 //! A frame by what its surfaces reflect to the eye: receivers, lights that are culled with or without knowing of them, and
 //! shading by the lists.
 
+mod even;
 mod lists;
 mod palette;
 mod receivers;
@@ -53,6 +54,8 @@ pub struct Scenery<'a, R, P> {
     /// For each pixel, none for sky.
     pub receivers: &'a [Option<Receiver<R>>],
     pub palette: P,
+    /// A picture with random numbers of another seed, if tiles have a δ in proportion to what they show.
+    pub before: Option<&'a [Vec3]>,
 }
 
 /// What to cull by.

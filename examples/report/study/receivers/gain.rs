@@ -19,6 +19,7 @@ pub fn in_equal_time(subjects: &[Subject], all: &[Measured]) -> Study {
         "ms",
         "sigma_gain",
         "median_over_todays",
+        "median_over_one_delta",
     ]);
     let mut panels = Vec::new();
     for subject in subjects {
@@ -36,6 +37,7 @@ pub fn in_equal_time(subjects: &[Subject], all: &[Measured]) -> Study {
                     gain.ms.into(),
                     gain.sigma.into(),
                     gain.median.into(),
+                    gain.median_over_one_delta.into(),
                 ]);
                 let [low, middle, high] = gain.variance;
                 let Some(at) = measured.material.place() else {
@@ -67,13 +69,14 @@ pub fn in_equal_time(subjects: &[Subject], all: &[Measured]) -> Study {
         caption: "How much less variance each way has than today's best blind one, in the time that this takes with \
                   δ = 0.0001. Above 1 is better; bars are 95 % confidence. A way is left out where its coarsest setting \
                   takes longer, or its finest less long. Sigma and median: the same for the sum of standard deviations, \
-                  squared, and the relative error of the median pixel over that of the blind way.",
+                  squared, and the relative error of the median pixel over that of the blind way, or of the same way with \
+                  one δ.",
         sheet,
         summary: None,
         picture: None,
         figure: Figure {
             title: "Variance in equal time, by what receivers are made of".into(),
-            subtitle: of_receivers(subjects, "“all lights”"),
+            subtitle: of_receivers(subjects, ", but for “all lights”"),
             panels,
         },
     }
@@ -91,6 +94,8 @@ struct Gain {
     variance: [f64; 3],
     sigma: f64,
     median: f64,
+    /// NaN if the way has one δ.
+    median_over_one_delta: f64,
 }
 
 fn gains(measured: &Measured) -> Vec<Gain> {
@@ -115,6 +120,10 @@ fn gains(measured: &Measured) -> Vec<Gain> {
         let log = blind.log_mse[0] - at.log_mse[0];
         let error = 1.96 * blind.log_mse[1].hypot(at.log_mse[1]);
         let is_itself = curve.way == TODAY;
+        let with_one_delta = curve.way.with_one_delta().and_then(|way| {
+            let mut curves = measured.curves.iter();
+            curves.find(|curve| curve.way == way)?.at(ms)
+        });
         let variance =
             [-1.0, 0.0, 1.0].map(|side| (log + if is_itself { 0.0 } else { side * error }).exp());
         Some(Gain {
@@ -123,6 +132,7 @@ fn gains(measured: &Measured) -> Vec<Gain> {
             variance,
             sigma: (blind.sigma / at.sigma).powi(2),
             median: at.median / blind.median,
+            median_over_one_delta: with_one_delta.map_or(f64::NAN, |one| at.median / one.median),
         })
     };
     measured.curves.iter().filter_map(gain).collect()

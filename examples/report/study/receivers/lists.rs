@@ -128,6 +128,7 @@ impl Visitor for Counting<'_> {
             lights: &stage.lights,
             receivers,
             palette: White,
+            before: None,
         };
         let lists = DIVISIONS.map(|[tile, parts]| {
             let tiles = stage.tiles(tile);

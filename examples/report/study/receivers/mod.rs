@@ -1,6 +1,7 @@
 //! (h) Receivers: what it costs to leave their BRDF out of the probability, and what it is worth to put it in.
 
 mod curve;
+mod even;
 mod gain;
 mod ideal;
 mod lists;

@@ -13,7 +13,8 @@ pub enum Way {
     Culled {
         roulettes: Roulettes,
         tile: u32,
-        parts: u32,
+        /// Whether a tile has a δ in proportion to what it shows.
+        is_even: bool,
     },
     /// By importance in a light tree, out of the lights of the pixel's subregion or of all lights.
     Tree { is_interleaved: bool },
@@ -33,18 +34,13 @@ pub enum Setting {
 const USUAL_TILE: u32 = 8;
 
 /// What is best today: each pixel has a list by the tight bound, and decides by the light that arrives.
-pub const TODAY: Way = culled(Known::Nothing, Decided::ByPixel, 1, 1);
+pub const TODAY: Way = culled(Known::Nothing, Decided::ByPixel, 1);
 
-const fn culled(known: Known, decided: Decided, tile: u32, parts: u32) -> Way {
-    let roulettes = Roulettes {
-        known,
-        decided,
-        own_delta: false,
-    };
+const fn culled(known: Known, decided: Decided, tile: u32) -> Way {
     Way::Culled {
-        roulettes,
+        roulettes: Roulettes { known, decided },
         tile,
-        parts,
+        is_even: false,
     }
 }
 
@@ -52,25 +48,23 @@ impl Way {
     pub fn all() -> Vec<Self> {
         let bound = Decided::ByTile(TileProbability::bound());
         let mean = Decided::ByTile(TileProbability::default());
-        let own_delta = Self::Culled {
+        let even = |known| Self::Culled {
             roulettes: Roulettes {
-                known: Known::Receivers,
+                known,
                 decided: mean,
-                own_delta: true,
             },
             tile: USUAL_TILE,
-            parts: 2,
+            is_even: true,
         };
         vec![
             TODAY,
-            culled(Known::Receivers, Decided::ByPixel, 4, 1),
-            culled(Known::Nothing, bound, USUAL_TILE, 1),
-            culled(Known::Nothing, mean, USUAL_TILE, 1),
-            culled(Known::Receivers, bound, USUAL_TILE, 2),
-            culled(Known::Receivers, mean, USUAL_TILE, 2),
-            own_delta,
-            culled(Known::Receivers, mean, 4, 2),
-            culled(Known::Receivers, mean, 16, 4),
+            culled(Known::Receivers, Decided::ByPixel, 4),
+            culled(Known::Nothing, bound, USUAL_TILE),
+            culled(Known::Nothing, mean, USUAL_TILE),
+            even(Known::Nothing),
+            culled(Known::Receivers, bound, USUAL_TILE),
+            culled(Known::Receivers, mean, USUAL_TILE),
+            even(Known::Receivers),
             Self::Tree {
                 is_interleaved: true,
             },
@@ -87,26 +81,25 @@ impl Way {
     }
 
     /// All lights of a tile, if δ lets it.
-    pub const ALL_LIGHTS: Self = culled(Known::Nothing, Decided::ByPixel, 16, 1);
+    pub const ALL_LIGHTS: Self = culled(Known::Nothing, Decided::ByPixel, 16);
 
     pub fn name(self) -> String {
         let all = |is_interleaved| if is_interleaved { "" } else { ", all lights" };
         match self {
             Self::Culled {
-                roulettes, tile, ..
+                roulettes, is_even, ..
             } => {
                 let known = match roulettes.known {
                     Known::Nothing => "blind",
                     Known::Receivers => "aware",
                 };
                 match roulettes.decided {
-                    _ if roulettes.own_delta => format!("{known}, rms, own δ"),
+                    _ if is_even => format!("{known}, δ by tile"),
                     Decided::ByPixel => format!("{known} exact"),
                     Decided::ByTile(p) if p == TileProbability::bound() => {
                         format!("{known} by tile, bound")
                     }
-                    Decided::ByTile(_) if tile == USUAL_TILE => format!("{known} by tile, rms"),
-                    Decided::ByTile(_) => format!("{known}, rms, {tile}×{tile}"),
+                    Decided::ByTile(_) => format!("{known} by tile, rms"),
                 }
             }
             Self::Tree { is_interleaved } => format!("light tree{}", all(is_interleaved)),
@@ -117,25 +110,38 @@ impl Way {
     pub fn look(self) -> Look {
         let (color, is_dashed) = match self {
             Self::Culled {
-                roulettes, tile, ..
+                roulettes, is_even, ..
             } => {
                 let color = match (roulettes.known, roulettes.decided) {
-                    (Known::Receivers, Decided::ByTile(_)) if tile < USUAL_TILE => 5,
-                    (Known::Receivers, Decided::ByTile(_)) if tile > USUAL_TILE => 5,
+                    (Known::Nothing, _) if is_even => 5,
+                    (Known::Receivers, _) if is_even => 2,
                     (Known::Nothing, Decided::ByPixel) => 6,
                     (Known::Receivers, Decided::ByPixel) => 0,
                     (Known::Nothing, Decided::ByTile(_)) => 7,
                     (Known::Receivers, Decided::ByTile(_)) => 1,
                 };
                 let bound = Decided::ByTile(TileProbability::bound());
-                let color = if roulettes.own_delta { 2 } else { color };
-                (color, roulettes.decided == bound || roulettes.own_delta)
+                (color, roulettes.decided == bound)
             }
             Self::Tree { is_interleaved } => (3, !is_interleaved),
             Self::Resampled { is_interleaved } => (4, !is_interleaved),
         };
         let line = if is_dashed { Line::Dashed } else { Line::Solid };
         Look { color, line }
+    }
+
+    /// The same with one δ for all tiles, if it has a δ for each.
+    pub fn with_one_delta(self) -> Option<Self> {
+        match self {
+            Self::Culled {
+                roulettes, tile, ..
+            } if self.is_even() => Some(culled(roulettes.known, roulettes.decided, tile)),
+            _ => None,
+        }
+    }
+
+    pub fn is_even(self) -> bool {
+        matches!(self, Self::Culled { is_even: true, .. })
     }
 
     /// Whether a pixel has the lights of its subregion alone.
@@ -148,18 +154,18 @@ impl Way {
 
     /// From coarse to fine, where receivers reflect the radiance `mean` in the mean.
     pub fn settings(self, mean: f64, is_quick: bool) -> Vec<Setting> {
-        let (steps, fall) = if is_quick { (4, 1.0) } else { (9, 0.5) };
-        let deltas = |first: f64| -> Vec<Setting> {
+        let (steps, fall) = if is_quick { (4, 1.0) } else { (6, 0.75) };
+        let deltas = |first: f64, steps: i32, fall: f64| -> Vec<Setting> {
             let step = |i: i32| first * 10_f64.powf(-fall * f64::from(i));
             (0..steps).map(|i| Setting::Delta(step(i) as f32)).collect()
         };
-        let samples = [1, 2, 4, 8].map(Setting::Samples).into();
+        let samples = [1, 4].map(Setting::Samples).into();
         match self {
             Self::Culled { roulettes, .. } => match roulettes.known {
-                Known::Nothing => deltas(0.1),
-                Known::Receivers => deltas(10.0 * mean),
+                Known::Nothing => deltas(0.1, steps, fall),
+                Known::Receivers => deltas(10.0 * mean, steps, fall),
             },
-            Self::Tree { .. } => deltas(10.0 * mean),
+            Self::Tree { .. } => deltas(10.0 * mean, 3, 1.0),
             Self::Resampled { .. } => samples,
         }
     }
@@ -176,7 +182,7 @@ pub struct Stage<'a> {
 
 impl<'a> Stage<'a> {
     pub fn new(subject: &'a Subject<'a>, interleave: Interleave, lights: Vec<GlossyLight>) -> Self {
-        let sizes = [1, 2, 4, 8, 16];
+        let sizes = [1, 4, 8, 16];
         let tiles = |size| {
             let tiles = subject.tiles(&interleave, size, Slicing::ModifiedHalfZ);
             (size, tiles)
@@ -206,21 +212,20 @@ impl<'a> Stage<'a> {
         pixels.into_iter().filter(is_seen).collect()
     }
 
-    /// The radiance of all pixels, and the milliseconds that it takes.
+    /// The radiance of all pixels, and the milliseconds that it takes. A way that needs a picture `before` has one with
+    /// another seed.
     pub fn light<R: Receiving + Profiled>(
         &self,
-        way: Way,
-        setting: Setting,
+        (way, setting): (Way, Setting),
         receivers: &[Option<Receiver<R>>],
         lights: &[GlossyLight],
         seed: Seed,
+        before: Option<&[Vec3]>,
     ) -> (Vec<Vec3>, f64) {
         match (way, setting) {
             (
                 Way::Culled {
-                    roulettes,
-                    tile,
-                    parts,
+                    roulettes, tile, ..
                 },
                 Setting::Delta(delta),
             ) => {
@@ -231,8 +236,9 @@ impl<'a> Stage<'a> {
                     lights,
                     receivers,
                     palette: White,
+                    before,
                 };
-                let lit = scenery.light(roulettes, Division { tiles, parts });
+                let lit = scenery.light(roulettes, Division { tiles, parts: 1 });
                 let lit = lit.expect("fewer pairs than a u32 counts");
                 let ms = lit.ms();
                 (lit.radiance, ms)
