@@ -11,9 +11,9 @@ use std::time::Duration;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use stochastic_light_culling::{
     BatchBuilder, Blind, Camera, Culler, DepthInterval, Direction, Ggx, GgxLobe, Incidence,
-    LambertLobe, LightBatch, LightLists, LobeFamily, ProjectedEllipsoid, Receiver, ReceiverCluster,
-    ReceiverCuller, ReceiverLobe, Roulette, Schlick, Seed, ShadingBatch, TileDepths, TileGrid,
-    TileProbability, TileReceivers, Vpl, WeightedLists, Xi, glam::Vec3,
+    LambertLobe, LightBatch, LightLists, LobeFamily, LobeSum, ProjectedEllipsoid, Receiver,
+    ReceiverCluster, ReceiverCuller, ReceiverLobe, Roulette, Schlick, Seed, ShadingBatch,
+    TileDepths, TileGrid, TileProbability, TileReceivers, Vpl, WeightedLists, Xi, glam::Vec3,
 };
 
 const SIZE: [u32; 2] = [960, 540];
@@ -95,12 +95,26 @@ impl Scene {
     }
 }
 
+/// The index of a pixel.
+fn whole([x, y]: [u32; 2]) -> usize {
+    (y * SIZE[0] + x) as usize
+}
+
+/// The index of a pixel of the first tile, in place of those of all others: a G-buffer that the cache holds.
+fn first_tile([x, y]: [u32; 2]) -> usize {
+    whole([x % 16, y % 16])
+}
+
 /// Fills `tiles` from a G-buffer.
-fn fill<R: ReceiverLobe>(tiles: &mut TileReceivers<R::Family>, receivers: &[Receiver<R>]) {
+fn fill<R: ReceiverLobe>(
+    tiles: &mut TileReceivers<R::Family>,
+    receivers: &[Receiver<R>],
+    index: impl Fn([u32; 2]) -> usize,
+) {
     let grid = tiles.parts_grid();
     tiles.fill(|part, _| {
         let pixels = grid.pixels(part).pixels();
-        let receivers = pixels.map(|[x, y]| &receivers[(y * SIZE[0] + x) as usize]);
+        let receivers = pixels.map(|pixel| &receivers[index(pixel)]);
         ReceiverCluster::of(receivers.map(|receiver| (receiver.position, receiver.lobe.family())))
     });
 }
@@ -110,9 +124,13 @@ fn records<R: ReceiverLobe>(group: &mut Group, name: &str, receivers: &[Receiver
     for parts in [1, 2, 4] {
         let mut tiles = TileReceivers::new(&grid, parts, 1).expect("few");
         group.bench_function(format!("{name}, {parts}×{parts} parts"), |b| {
-            b.iter(|| fill(black_box(&mut tiles), receivers));
+            b.iter(|| fill(black_box(&mut tiles), receivers, whole));
         });
     }
+    let mut tiles = TileReceivers::new(&grid, 1, 1).expect("few");
+    group.bench_function(format!("{name}, read from the cache"), |b| {
+        b.iter(|| fill(black_box(&mut tiles), receivers, first_tile));
+    });
 }
 
 /// All lights against one tile, or 64 of them.
@@ -198,6 +216,7 @@ fn frames(group: &mut Group, scene: &Scene) {
         fill(
             &mut tiles,
             &scene.receivers(|normal, eye| glossy(0.12, normal, eye)),
+            whole,
         );
         let name = format!("glossy, drawn by mean square, {parts}×{parts} parts");
         group.bench_function(name, |b| {
@@ -220,6 +239,12 @@ fn all(c: &mut Criterion) {
     records(&mut group, "diffuse", &scene.receivers(lambert));
     let shiny = |normal, eye| glossy(0.12, normal, eye);
     records(&mut group, "glossy", &scene.receivers(shiny));
+    let varnished = |normal, eye| LobeSum::new(lambert(normal, eye), shiny(normal, eye));
+    records(
+        &mut group,
+        "diffuse and glossy",
+        &scene.receivers(varnished),
+    );
     group.finish();
 
     let mut group = c.benchmark_group("pairs of a light and a tile");

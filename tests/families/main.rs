@@ -10,9 +10,9 @@ use fastrand::Rng;
 use members::{Member, surfaces};
 use rayon::prelude::*;
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, Cap, Direction, Ggx, GgxFamily, GgxLobe, HeightCorrelated,
-    Incidence, LambertLobe, Lobe, LobeFamily, LobeSum, LtcLobe, NoFresnel, PhongLobe, ReceiverLobe,
-    Separable, SphericalGaussian, glam::Vec3,
+    AnisotropicGgx, AnisotropicGgxLobe, Cap, Direction, Fresnel, FresnelMajorant, Ggx, GgxFamily,
+    GgxLobe, HeightCorrelated, Incidence, LambertLobe, Lobe, LobeFamily, LobeSum, LtcLobe,
+    NoFresnel, PhongLobe, ReceiverLobe, Separable, SphericalGaussian, glam::Vec3,
 };
 use support::adversary::{direction, log_uniform, unit_vector};
 use support::caps::nearest;
@@ -226,6 +226,44 @@ fn black_surfaces_need_no_light() {
     check_empty(&sum([0.0, 1.0], 0.5, down), &lit);
 }
 
+/// A factor that is 1, with a majorant of any numbers.
+#[derive(Clone, Copy)]
+struct Wild(FresnelMajorant);
+
+impl Fresnel for Wild {
+    fn reflectance(&self, _half_angle_cosine: f32) -> f32 {
+        1.0
+    }
+
+    fn majorant(&self) -> FresnelMajorant {
+        self.0
+    }
+}
+
+#[test]
+fn fresnel_majorants_that_are_none_count_as_one() {
+    let ggx = Ggx::new(0.3).unwrap();
+    let incidence = Incidence::head_on(Direction::Z);
+    let cap = Cap::new(Direction::Z, 0.1).unwrap();
+    let whole = GgxLobe::new(ggx, NoFresnel, incidence).family();
+    let numbers = [
+        [-1e-14, 1e18],
+        [0.0, 0.0],
+        [f32::NAN, 0.0],
+        [0.5, -1.0],
+        [0.5, f32::NAN],
+        [0.5, f32::INFINITY],
+    ];
+    for [base, rise] in numbers {
+        let wild = Wild(FresnelMajorant { base, rise });
+        let family = GgxLobe::new(ggx, wild, incidence).family();
+        assert_eq!(family.greatest_within(&cap), whole.greatest_within(&cap));
+        // A greater lobe beside it changes nothing.
+        let both = LobeFamily::union([family, whole].into_iter()).unwrap();
+        assert_eq!(both.greatest_within(&cap), whole.greatest_within(&cap));
+    }
+}
+
 #[test]
 fn opposite_axes_and_mirrors_have_finite_bounds() {
     let mirror = |normal| {
@@ -248,6 +286,11 @@ fn unions_of_caps_hold_them() {
     assert_eq!(Cap::union([].into_iter()), None);
     let narrow = around(Direction::X, 0.1);
     assert_eq!(Cap::union([narrow; 3].into_iter()), Some(narrow));
+    // However much the sum of their axes is rounded.
+    let slant = around(Direction::new(Vec3::new(0.1, 0.7, 0.3)).unwrap(), 0.0);
+    for count in [2, 255, 5_000, 100_000] {
+        assert_eq!(Cap::union((0..count).map(|_| slant)), Some(slant));
+    }
     let both = Cap::union([narrow, around(Direction::Y, 0.2)].into_iter()).unwrap();
     let to_y = (*both.axis() - *Direction::Y).length();
     assert!(both.chord() >= to_y + 0.2 && both.chord() < to_y + 0.2001);

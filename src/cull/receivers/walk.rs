@@ -140,12 +140,16 @@ impl<L: Lobe, F: LobeFamily, R: Rule> Scene<'_, L, F, R> {
     /// Writes the lists of all tiles of a block, of whose lights not all may light it. One more element of `scratch`
     /// is for those that may.
     #[cfg(feature = "rayon")]
-    pub fn enter<S: Simd>(&self, simd: S, block: Block, output: &mut Output) {
-        let Block {
+    pub fn enter<S: Simd>(
+        &self,
+        simd: S,
+        Block {
             node,
             lights,
             scratch,
-        } = block;
+        }: Block,
+        output: &mut Output,
+    ) {
         let Some((own, scratch)) = scratch.split_last_mut() else {
             return;
         };
@@ -165,12 +169,16 @@ impl<L: Lobe, F: LobeFamily, R: Rule> Scene<'_, L, F, R> {
     }
 
     /// Writes the lists of all tiles of a block.
-    pub fn walk<S: Simd>(&self, simd: S, block: Block, output: &mut Output) {
-        let Block {
+    pub fn walk<S: Simd>(
+        &self,
+        simd: S,
+        Block {
             node,
             lights,
             scratch,
-        } = block;
+        }: Block,
+        output: &mut Output,
+    ) {
         let Some((own, scratch)) = scratch.split_last_mut() else {
             return;
         };
