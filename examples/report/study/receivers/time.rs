@@ -300,7 +300,8 @@ fn against_time(subjects: &[Subject], all: &[Measured]) -> Study {
                   pixel's subregion, or of the frame where a pixel draws from all lights. So interleaved curves leave out \
                   the error of having fewer lights, which is the same for all of them. Along a curve δ falls, or the \
                   number of samples rises. Where lights are few, to evaluate all of them is quick, too: the CSV has the \
-                  time. Times are the least of those of all pictures. Bars are 95 % confidence.",
+                  time. Times are the least of those of all pictures. Bars are 95 % confidence. Pictures of a \
+                  setting are few, so where rare bright lights make the error, it and the bias in standard errors are rough.",
         sheet,
         summary: None,
         picture: None,
