@@ -103,8 +103,8 @@ struct Transformed<D> {
     across: D,
     /// b
     slant: D,
-    /// The length of the third row before it is scaled.
-    length: D,
+    /// Over the length of the third row before it is scaled.
+    over: D,
 }
 
 impl<D: Double> Transformed<D> {
@@ -113,14 +113,17 @@ impl<D: Double> Transformed<D> {
     fn of([first, third]: [Vector3<D>; 2]) -> Self {
         let second = third.cross(first);
         let (length, second_length) = (third.length(), second.length());
-        let (e_3, e_2) = (third / length, second / second_length);
+        let one = length.splat(1.0);
+        let (over, over_second) = (one / length, one / second_length);
+        let (e_3, e_2) = (third * over, second * over_second);
+        let across = length * over_second;
         Self {
             frame: [e_2.cross(e_3), e_2, e_3],
             // The first row has the component ‖r₂‖/‖r₃‖ across the third.
-            along: length * length / second_length,
-            across: length / second_length,
-            slant: first.dot(e_3) / length,
-            length,
+            along: length * across,
+            across,
+            slant: first.dot(e_3) * over,
+            over,
         }
     }
 
@@ -133,8 +136,11 @@ impl<D: Double> Transformed<D> {
         // Those of the module documentation.
         let v = [row.cosine * a, row.cosine * k - row.sine];
         let t = [row.sine * a, row.sine * k + row.cosine];
-        let along = |i: usize, j: usize| v[i] * v[j] + row.nu * t[i] * t[j];
-        let (p_11, p_13, p_33) = (along(0, 0), along(0, 1), along(1, 1));
+        let (p_11, p_13, p_33) = (
+            v[0] * v[0] + row.nu * t[0] * t[0],
+            v[0] * v[1] + row.nu * t[0] * t[1],
+            v[1] * v[1] + row.nu * t[1] * t[1],
+        );
         let second = m_2 * m_2;
         let alpha_3 = row.share / (p_11 + p_33).max(second);
         let (q_11, q_33) = (-(alpha_3 * p_11) + 1.0, -(alpha_3 * p_33) + 1.0);
@@ -158,8 +164,7 @@ impl<D: Double> Transformed<D> {
         );
         let zero = a.zero();
         let center = Vector3::new(a * x_1 + k * x_3, zero, x_3);
-        let scale =
-            N::narrow((amplitude.widen() / (self.length * self.length * self.length)).sqrt());
+        let scale = N::narrow((amplitude.widen() * (self.over * self.over * self.over)).sqrt());
         let [[x, z], [u, v]] = plane.axes;
         ellipsoids_along(
             &self.frame,

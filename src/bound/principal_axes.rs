@@ -82,24 +82,40 @@ pub(super) fn ellipsoids_along<N: Single>(
     let moved = (longest + center.length()) * (POINT_ROUNDINGS * f64::from(UNIT_ROUNDOFF));
     let one = moved.splat(1.0);
     let share = (moved / shortest).min(one);
-    let enlarged = |a: N::Double| {
-        let squared = (share + 1.0) * a * a + (one / share + 1.0) * moved * moved;
-        (N::narrow(squared.sqrt()) * scale).round_up(roundings)
-    };
-    let to_world = |v: Vector3<N::Double>, factor: N::Double| {
-        let [x, y, z] = *frame;
-        let terms = [(factor * v.x, x), (factor * v.y, y), (factor * v.z, z)];
-        Vector3::narrow(Vector3::combine(terms))
-    };
     Ellipsoids {
-        parts: [Vector3::zero(scale), to_world(center, scale.widen())],
+        parts: [Vector3::zero(scale), to_world(frame, center, scale.widen())],
         axes: Matrix3::new(
-            to_world(axes[0], one),
-            to_world(axes[1], one),
-            to_world(axes[2], one),
+            to_world(frame, axes[0], one),
+            to_world(frame, axes[1], one),
+            to_world(frame, axes[2], one),
         ),
-        semi_axes: Vector3::new(enlarged(a), enlarged(b), enlarged(c)),
+        semi_axes: Vector3::new(
+            (enlarged::<N>(a, moved, share) * scale).round_up(roundings),
+            (enlarged::<N>(b, moved, share) * scale).round_up(roundings),
+            (enlarged::<N>(c, moved, share) * scale).round_up(roundings),
+        ),
     }
+}
+
+/// The semi-axis for a = `semi_axis`, d = `moved` and t = `share`.
+#[inline(always)]
+fn enlarged<N: Single>(semi_axis: N::Double, moved: N::Double, share: N::Double) -> N {
+    let a = semi_axis;
+    let one = moved.splat(1.0);
+    let squared = (share + 1.0) * a * a + (one / share + 1.0) * moved * moved;
+    N::narrow(squared.sqrt())
+}
+
+/// `factor` times the vector whose coordinates are those of `frame`.
+#[inline(always)]
+fn to_world<N: Single>(
+    frame: &[Vector3<N::Double>; 3],
+    v: Vector3<N::Double>,
+    factor: N::Double,
+) -> Vector3<N> {
+    let [x, y, z] = *frame;
+    let terms = [(factor * v.x, x), (factor * v.y, y), (factor * v.z, z)];
+    Vector3::narrow(Vector3::combine(terms))
 }
 
 #[inline(always)]
