@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::cap_union::{CapMean, CapReach, CapSum};
-use super::ltc_lobes::LtcMembers;
+use super::ltc_majorant::LtcMembers;
 use super::{Cap, Caps, LobeFamily, LtcLobe, Majorant, ReceiverLobe};
 use crate::base::Direction;
 use crate::num::{Single, Vector3, round_down, round_up, sqrt_f64};

@@ -1,11 +1,10 @@
-use core::f64::consts::FRAC_1_PI;
-
 use glam::{Mat3, Vec3};
 
+use super::ltc_from_ggx::{GgxSurfaces, IncidencePlane, Matrix};
 use super::ltc_lobes::LtcLobes;
-use super::{Cap, Caps, Fresnel, Ggx, Incidence, Lobe, LobeNumbers, Majorant, ltc_table, padded};
+use super::{Cap, Caps, Fresnel, Ggx, Incidence, Lobe, LobeNumbers, Majorant, padded};
 use crate::base::{Direction, Error, number_in};
-use crate::num::{Single, Vector3, exact_dot, sqrt_f64};
+use crate::num::{Single, Vector3};
 
 /// A linearly transformed cosine: a cheap lobe that resembles a [`GgxLobe`](crate::GgxLobe)
 /// [Heitz et al. 2016; Xia et al. 2023].
@@ -48,10 +47,12 @@ use crate::num::{Single, Vector3, exact_dot, sqrt_f64};
 /// # When it pays
 ///
 /// The value takes 0.6 of the time of a [`GgxLobe`](crate::GgxLobe)'s with Schlick's factor, and half of it in
-/// lanes. Direction, roulette and sum are the same for both, so that a light of a list takes 0.75 to 0.8 of the
-/// time (Zen 4, AVX-512). But the lobe takes five times as long to make, 0.1 µs. So it pays at lights that are
-/// made once. At receivers, which are made anew in each frame, and whose lobe is evaluated for accepted lights
-/// alone, it pays from about 150 lights in the list of a pixel on.
+/// lanes. Direction, roulette and sum are the same for both. Where a tile lists many lights that few of its points
+/// accept, [`RadianceEstimator::at_block`](crate::RadianceEstimator::at_block) sees without a division that they are too
+/// faint, and a light takes 0.65 of the time (Zen 4, AVX-512). But the lobe takes longer to make: 20 ns, sixteen at
+/// a time, as `LtcLobe::many` makes them with the feature `cull`, and 35 ns one by one. So it pays at lights that are
+/// made once. At receivers, which are made anew in each frame, and whose lobe is evaluated for accepted lights alone,
+/// it pays from about 50 lights in the list of a pixel on.
 ///
 /// # Edges
 ///
@@ -86,42 +87,41 @@ pub struct LtcLobe {
     amplitude: f32,
     /// The first and the third row of M⁻¹, in world space. The second is their cross product.
     rows: [Vec3; 2],
+    /// The most by which rounding moves M⁻¹ω.
+    image_error: f32,
 }
 
 impl LtcLobe {
     /// Creates the lobe that resembles the GGX lobe of light that arrives with `incidence`, with
     /// height-correlated masking and shadowing.
     pub fn new<F: Fresnel>(ggx: Ggx, fresnel: F, incidence: Incidence) -> Self {
-        let plane = Plane::of(incidence);
-        let [mu, sine] = [plane.cosine, plane.sine];
-        if mu <= 0.0 {
-            return Self::empty(incidence.normal);
+        let (lobe, reflected) = GgxSurfaces::new(ggx, fresnel, incidence).lobes();
+        Self::of_numbers(incidence.normal, lobe.made_numbers(reflected))
+    }
+
+    /// The lobe with this normal, and numbers as in [`LtcLobes::made_numbers`].
+    #[inline(always)]
+    pub(crate) fn of_numbers(
+        normal: Direction,
+        [
+            reflected,
+            amplitude,
+            x_x,
+            x_y,
+            x_z,
+            z_x,
+            z_y,
+            z_z,
+            image_error,
+        ]: [f32; 9],
+    ) -> Self {
+        Self {
+            normal,
+            reflected,
+            amplitude,
+            rows: [Vec3::new(x_x, x_y, x_z), Vec3::new(z_x, z_y, z_z)],
+            image_error,
         }
-        let alpha = f64::from(ggx.roughness());
-        let root = sqrt_f64(alpha);
-        let [a, b, d, e] = ltc_table::matrix(root, sine / sqrt_f64(1.0 + mu));
-        // tan(θ/2) and tan(δ/2), tanδ = α tanθ.
-        let slope = alpha * sine;
-        let half_delta = slope / (mu + sqrt_f64(mu * mu + slope * slope));
-        let half_incidence = sine / (1.0 + mu);
-        let [n_a, f_a] = ltc_table::albedos(root, 0.5 * (half_incidence + half_delta));
-        let [head_on, grazing] = [1.0, 0.0].map(|cosine| f64::from(fresnel.reflectance(cosine)));
-        let reflected = head_on * n_a + (grazing - head_on) * f_a;
-        // A caller's factor may be NaN.
-        let reflected = if reflected > 0.0 {
-            reflected.min(1.0)
-        } else {
-            0.0
-        };
-        let elements = [a, alpha * b, alpha * d, alpha * e];
-        // Above ω_u in the plane of incidence n has these coordinates.
-        let above = share_above(elements, [-sine, mu]);
-        Self::of_plane(
-            incidence.normal,
-            [plane.mirror.cross(plane.across), plane.mirror],
-            elements,
-            [reflected, above],
-        )
     }
 
     /// Creates a lobe from a caller's own table, for light that arrives with `incidence`. The directions of
@@ -153,65 +153,28 @@ impl LtcLobe {
         incidence: Incidence,
     ) -> Result<Self, Error> {
         let magnitude = number_in("magnitude", magnitude, "in [0, 1]", 0.0..=1.0)?;
-        let elements = inverse.map(f64::from);
-        let [m11, m13, m31, m33] = elements;
-        let determinant = m11 * m33 - m13 * m31;
-        let lengths = sqrt_f64((m11 * m11 + m13 * m13) * (m31 * m31 + m33 * m33));
+        let matrix = Matrix::of(inverse);
+        let determinant = matrix.determinant;
         let in_range = inverse.iter().all(|element| element.abs() <= 1e6);
-        if !(in_range && determinant >= 1e-6 && determinant >= 1e-4 * lengths) {
+        if !(in_range && determinant >= 1e-6 && determinant >= 1e-4 * matrix.lengths()) {
             return Err(Error::Matrix {
                 quantity: "M⁻¹",
                 element: determinant as f32,
                 valid: "it must be invertible, with elements up to 10⁶; determinant",
             });
         }
-        let plane = Plane::of(incidence);
+        let normal = incidence.normal.into();
+        let plane = IncidencePlane::of(normal, incidence.incoming.into());
         if plane.cosine <= 0.0 {
-            return Ok(Self::empty(incidence.normal));
+            let lobe = LtcLobes::empty(normal);
+            return Ok(Self::of_numbers(incidence.normal, lobe.made_numbers(0.0)));
         }
-        let normal = plane.normal;
-        let above = share_above(elements, [0.0, 1.0]);
-        let reflected = f64::from(magnitude) * above;
-        Ok(Self::of_plane(
-            incidence.normal,
-            [plane.across.cross(normal), normal],
-            elements,
-            [reflected, above],
-        ))
-    }
-
-    fn empty(normal: Direction) -> Self {
-        Self {
-            normal,
-            reflected: 0.0,
-            amplitude: 0.0,
-            rows: [Vec3::X, Vec3::Z],
-        }
-    }
-
-    /// From the elements m₁₁, m₁₃, m₃₁ and m₃₃ of M⁻¹, whose middle element is 1, in the frame of two unit
-    /// vectors in the plane of incidence.
-    ///
-    /// M⁻¹ is multiplied by a factor, which changes the lobe by its third power alone, so that the second row
-    /// becomes the cross product of the others: 1/(m₁₁m₃₃ − m₁₃m₃₁).
-    fn of_plane(
-        normal: Direction,
-        [x, z]: [Vector3<f64>; 2],
-        [m11, m13, m31, m33]: [f64; 4],
-        [reflected, above]: [f64; 2],
-    ) -> Self {
-        let factor = 1.0 / (m11 * m33 - m13 * m31);
-        let row = |along: f64, up: f64| {
-            let row = Vector3::combine([(factor * along, x), (factor * up, z)]);
-            Vec3::from(Vector3::<f32>::narrow(row))
-        };
-        let amplitude = reflected / above * FRAC_1_PI * factor * factor;
-        Self {
-            normal,
-            reflected: reflected as f32,
-            amplitude: amplitude as f32,
-            rows: [row(m11, m13), row(m31, m33)],
-        }
+        let magnitude = f64::from(magnitude);
+        let reflected = 0.5 * magnitude * matrix.twice_share_above([0.0, 1.0]);
+        let frame = [plane.across.cross(plane.normal), plane.normal];
+        let lobe = matrix.lobes(normal, frame, magnitude);
+        let numbers = lobe.made_numbers(reflected as f32);
+        Ok(Self::of_numbers(incidence.normal, numbers))
     }
 
     /// The surface normal n.
@@ -252,56 +215,7 @@ impl LtcLobe {
             amplitude: self.amplitude,
             first: self.rows[0].into(),
             third: self.rows[1].into(),
-        }
-    }
-}
-
-/// The share of a transformed cosine above the horizon, for the elements of M⁻¹ and the coordinates of n.
-///
-/// M⁻¹ maps the upper hemisphere to {ω : (Mᵀn)·ω > 0}, and the cosine of a lune integrates to π(1 + c)/2,
-/// where c is the third component of the unit vector along Mᵀn. Both components below are those of Mᵀn times
-/// the determinant. They do not vanish together.
-fn share_above([m11, m13, m31, m33]: [f64; 4], [x, z]: [f64; 2]) -> f64 {
-    let (first, third) = (x * m33 - z * m31, z * m11 - x * m13);
-    let length = sqrt_f64(first * first + third * third);
-    // Caller's lobes may lie almost wholly below the horizon.
-    (0.5 * (1.0 + third / length)).max(1e-6)
-}
-
-/// The plane of incidence in `f64`.
-struct Plane {
-    normal: Vector3<f64>,
-    /// ω_u
-    mirror: Vector3<f64>,
-    /// ω_u × n, of unit length
-    across: Vector3<f64>,
-    /// μ
-    cosine: f64,
-    /// √(1 − μ²)
-    sine: f64,
-}
-
-impl Plane {
-    fn of(incidence: Incidence) -> Self {
-        let [normal, incoming] = [incidence.normal, incidence.incoming].map(Vector3::<f32>::from);
-        let over = [normal, incoming].map(|v| 1.0 / v.widen().length());
-        let (n, w) = (normal.widen() * over[0], incoming.widen() * over[1]);
-        let cross = n.cross(w);
-        let sine = cross.length();
-        let across = if sine > 0.0 {
-            cross * (1.0 / sine)
-        } else {
-            // At normal incidence the plane is arbitrary.
-            let (any, _) = normal.any_orthonormal_pair();
-            let perpendicular = n.cross(any.widen());
-            perpendicular * (1.0 / perpendicular.length())
-        };
-        Self {
-            normal: n,
-            mirror: Vector3::combine([(2.0 * n.dot(w), n), (-1.0, w)]),
-            across,
-            cosine: exact_dot(normal, incoming) * (over[0] * over[1]),
-            sine,
+            image_error: self.image_error,
         }
     }
 }
@@ -328,11 +242,14 @@ impl Lobe for LtcLobe {
     #[inline]
     fn numbers(&self) -> LobeNumbers<f32> {
         let (n, [x, z]) = (self.normal, self.rows);
-        padded([n.x, n.y, n.z, self.amplitude, x.x, x.y, x.z, z.x, z.y, z.z])
+        let (amplitude, error) = (self.amplitude, self.image_error);
+        padded([
+            n.x, n.y, n.z, amplitude, x.x, x.y, x.z, z.x, z.y, z.z, error,
+        ])
     }
 
     fn numbers_in_use() -> usize {
-        10
+        11
     }
 
     fn has_more_than_numbers() -> bool {
@@ -352,6 +269,18 @@ impl Lobe for LtcLobe {
         outgoing: Vector3<N>,
     ) -> N {
         LtcLobes::from_numbers(numbers).value(outgoing)
+    }
+
+    #[inline(always)]
+    fn is_fainter_in_lanes<N: Single>(
+        numbers: &LobeNumbers<N>,
+        flux: N,
+        way: Vector3<N>,
+        length_squared: N,
+        least: N,
+    ) -> Option<N::Mask> {
+        let lobes = LtcLobes::from_numbers(numbers);
+        Some(lobes.is_fainter(flux, way, length_squared, least))
     }
 
     #[inline(always)]

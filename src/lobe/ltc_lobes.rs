@@ -1,10 +1,22 @@
-//! The formulas of [`LtcLobe`](super::LtcLobe), for one lobe in each lane, and the majorant of many.
+//! The value of an [`LtcLobe`](super::LtcLobe), for one lobe in each lane.
 
-use super::{Caps, LobeNumbers, Majorant};
-use crate::num::{Real, Single, Vector3};
+use super::LobeNumbers;
+use crate::num::{Real, Single, UNIT_ROUNDOFF, Vector3};
 
-/// Budget for the value, and for the rounding of a maximum within a cap to single precision.
-const MAXIMUM_ROUNDINGS: u16 = 32;
+/// Budget for the images of a direction and of a way along it, in units of u times the norm of M⁻¹: 12, times
+/// (η(1 − η))^(−½), η = 2⁻⁸.
+const IMAGE_ROUNDINGS: f64 = 204.0;
+/// (1 − η)², and the same again to pay for all else that is rounded.
+const LEFT_OF_FOURTH_POWER: f32 = 0.98;
+/// The least and the largest norm of M⁻¹ that the test of faint lights takes, and the largest reciprocal of a squared
+/// ‖M⁻¹ω‖, alone and times the amplitude: 2¹² and 2⁴⁰.
+const NORMS: [f64; 2] = [0.1, 4096.0];
+const LARGEST_PEAK: f64 = 1_099_511_627_776.0;
+/// The least δξ that it takes, and the least product over (Φ + 1)²: 2⁻⁶⁰. So neither side loses digits to underflow, nor
+/// does the value.
+const LEAST: f32 = 8.673_617_4e-19;
+/// Is far above what ΦA loses to underflow, and far below all that counts: 2⁻¹²⁰.
+const LEAST_FACTOR: f32 = 7.523_164e-37;
 
 /// An [`LtcLobe`](super::LtcLobe) in each lane.
 #[derive(Clone, Copy)]
@@ -15,44 +27,81 @@ pub(crate) struct LtcLobes<N> {
     pub first: Vector3<N>,
     /// The third row of M⁻¹.
     pub third: Vector3<N>,
+    /// The most by which rounding moves M⁻¹ω. Infinite if the test of faint lights is not for this lobe.
+    pub image_error: N,
 }
 
 impl<N: Single> LtcLobes<N> {
     #[inline(always)]
     pub fn from_numbers(numbers: &LobeNumbers<N>) -> Self {
-        let [n_x, n_y, n_z, amplitude, x_x, x_y, x_z, z_x, z_y, z_z, ..] = *numbers;
+        let [
+            n_x,
+            n_y,
+            n_z,
+            amplitude,
+            x_x,
+            x_y,
+            x_z,
+            z_x,
+            z_y,
+            z_z,
+            image_error,
+            ..,
+        ] = *numbers;
         Self {
             normal: Vector3::new(n_x, n_y, n_z),
             amplitude,
             first: Vector3::new(x_x, x_y, x_z),
             third: Vector3::new(z_x, z_y, z_z),
+            image_error,
         }
     }
 
-    /// The rows of M⁻¹, where the first and the third are as they are stored.
+    /// ρ = `reflected`, and the numbers beside the normal.
     #[inline(always)]
-    pub(super) fn rows(&self) -> [Vector3<N::Double>; 3] {
-        let (first, third) = (self.first.widen(), self.third.widen());
-        [first, third.cross(first), third]
+    pub fn made_numbers(&self, reflected: N) -> [N; 9] {
+        let (x, z) = (self.first, self.third);
+        [
+            reflected,
+            self.amplitude,
+            x.x,
+            x.y,
+            x.z,
+            z.x,
+            z.y,
+            z.z,
+            self.image_error,
+        ]
     }
 
-    /// The majorant within a cap.
+    /// Lobes that are zero in every direction.
     #[inline(always)]
-    pub fn majorant(&self, cap: &Caps<N>) -> Majorant<N> {
-        let rows = self.rows();
-        let squares = rows.map(Vector3::length_squared);
-        let [x, determinant, z] = squares;
-        let sum = x + determinant + z;
-        let zero = sum.zero();
-        let members = LtcMembers {
-            normals: Caps::around(self.normal),
-            amplitude: self.amplitude,
-            rows,
-            deviations: [zero; 2],
-            norms: [z.sqrt(), sum.sqrt()],
-            least_image: determinant * 2.0 / sum,
-        };
-        members.majorant(cap)
+    pub fn empty(normal: Vector3<N>) -> Self {
+        let (zero, one) = (normal.x.zero(), normal.x.splat(1.0));
+        Self {
+            normal,
+            amplitude: zero,
+            first: Vector3::new(one, zero, zero),
+            third: Vector3::new(zero, zero, one),
+            image_error: zero,
+        }
+    }
+
+    /// `yes` where `mask` holds, and `no`, with the same normal, elsewhere.
+    #[inline(always)]
+    pub fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
+        let [amplitude, image_error] = N::select_all(
+            mask,
+            [yes.amplitude, yes.image_error],
+            [no.amplitude, no.image_error],
+        );
+        Self {
+            normal: no.normal,
+            amplitude,
+            first: Vector3::select(mask, yes.first, no.first),
+            third: Vector3::select(mask, yes.third, no.third),
+            image_error,
+        }
     }
 
     /// The second row of M⁻¹.
@@ -78,63 +127,43 @@ impl<N: Single> LtcLobes<N> {
     }
 }
 
-/// One lobe, or the members of a family, in each lane.
-#[derive(Clone, Copy)]
-pub(super) struct LtcMembers<N: Single> {
-    pub normals: Caps<N>,
-    /// The greatest.
-    pub amplitude: N,
-    /// The rows of the mean of the matrices.
-    pub rows: [Vector3<N::Double>; 3],
-    /// How far the third row and the matrix may be from that.
-    pub deviations: [N::Double; 2],
-    /// The greatest length of the third row, and the greatest norm of the matrix.
-    pub norms: [N::Double; 2],
-    /// The least ‖M⁻¹ω‖ of all directions.
-    pub least_image: N::Double,
+/// Where that of a light is below a radiance.
+impl<N: Single> LtcLobes<N> {
+    /// Whether Φv(ω)/l² is below `least` at the end of `way`, ω = `way`/l, also as [`value`](Self::value) rounds.
+    ///
+    /// With w = `way` that is ΦA (M⁻¹w)₃ l < `least` ‖M⁻¹w‖⁴: no quotient, where direction and value take one each. If
+    /// M⁻¹w is off by e, (a − e)² ≥ (1 − η)a² − e²/η for any η in (0, 1).
+    #[inline(always)]
+    pub fn is_fainter(&self, flux: N, way: Vector3<N>, length_squared: N, least: N) -> N::Mask {
+        let length = length_squared.sqrt();
+        let (x, y) = (self.first.dot(way), self.second().dot(way));
+        let height = self.third.dot(way);
+        let error = self.image_error * length;
+        let squared = x * x + y * y + height * height - error * error;
+        let factor = flux * self.amplitude + LEAST_FACTOR;
+        let least_product = (flux + 1.0) * (flux + 1.0) * LEAST;
+        let product = (height + error) * length * factor + least_product;
+        let is_in_range = least.gt(least.splat(LEAST));
+        // Overflows only above all that is compared.
+        let scaled = squared * (least * LEFT_OF_FOURTH_POWER) * squared.abs();
+        is_in_range & scaled.gt(product)
+    }
 }
 
-impl<N: Single> LtcMembers<N> {
-    /// The majorant within a cap.
-    ///
-    /// z grows by no more than the chord times its row, and ‖M⁻¹ω‖ falls by no more than the chord times the
-    /// greatest singular value, for which the root of the sum of all squared elements is taken. What the matrix of a
-    /// member differs by from the mean adds to both.
-    ///
-    /// The least singular value is the determinant over the product of the others, of which half that sum is an
-    /// upper bound. It bounds ‖M⁻¹ω‖ for wide caps.
-    ///
-    /// The typical value has the height of the majorant, and the image of the axis as far away as that and the spread
-    /// together.
-    #[inline(always)]
-    pub fn majorant(&self, cap: &Caps<N>) -> Majorant<N> {
-        let above = cap.greatest_cosine(&self.normals);
-        let (axis, chord) = (cap.axis.widen(), cap.chord.widen());
-        let image = self.rows.map(
-            #[inline(always)]
-            |row| row.dot(axis),
-        );
-        let [x, y, z] = image;
-        let image = (x * x + y * y + z * z).sqrt();
-        let height = z + self.norms[0] * chord + self.deviations[0];
-        let spread = self.norms[1] * chord + self.deviations[1];
-        let length = (image - spread).max(self.least_image);
-        let amplitude = self.amplitude.widen();
-        let one = amplitude.splat(1.0);
-        // z is no longer than the whole.
-        let greatest = amplitude * (height / length).min(one) / (length * length * length);
-        let squared = image * image + spread * spread * 0.5;
-        let typical = amplitude * height.min(squared.sqrt()) / (squared * squared);
-        let [greatest, typical] = [greatest, typical].map(
-            #[inline(always)]
-            |value| N::narrow(value.min(one.splat(f32::MAX.into()))),
-        );
-        let zero = self.amplitude.zero();
-        let smallest = zero.splat(f32::MIN_POSITIVE);
-        let greatest = Real::max(greatest.round_up(MAXIMUM_ROUNDINGS), smallest);
-        let typical = Real::max(typical, smallest).min(greatest);
-        let is_lit = self.amplitude.is_positive() & above.is_positive() & height.is_positive();
-        let [greatest, typical] = N::select_all(is_lit, [greatest, typical], [zero; 2]);
-        Majorant { greatest, typical }
-    }
+/// The [error](LtcLobes::image_error) of a lobe with this amplitude and these rows, the first and the third.
+#[inline(always)]
+pub(super) fn image_error<N: Single>(amplitude: N, [first, third]: [Vector3<N>; 2]) -> N {
+    let second = third.cross(first).widen().length_squared();
+    let sum = first.widen().length_squared() + second + third.widen().length_squared();
+    let norm = sum.sqrt();
+    // The determinant, `second`, over the product of the greater singular values, of which half the sum is an upper
+    // bound.
+    let least = second * 2.0 / sum;
+    let peak = amplitude.widen().max(sum.splat(1.0));
+    let [shortest, longest] = NORMS;
+    let is_in_range = norm.gt(sum.splat(shortest))
+        & norm.le(sum.splat(longest))
+        & peak.le(least * least * LARGEST_PEAK);
+    let error = N::narrow(norm * (IMAGE_ROUNDINGS * f64::from(UNIT_ROUNDOFF)));
+    N::select(is_in_range, error, amplitude.splat(f32::INFINITY))
 }

@@ -18,11 +18,27 @@ const ALBEDOS: usize = 2;
 
 /// First the matrices, then the albedos. The second coordinate changes fastest.
 #[rustfmt::skip]
-static BYTES: &[u8; 2 * KNOTS * KNOTS * (MATRIX_ELEMENTS + ALBEDOS)] = include_bytes!("ltc.bin");
+const BYTES: &[u8; 2 * KNOTS * KNOTS * (MATRIX_ELEMENTS + ALBEDOS)] = include_bytes!("ltc.bin");
+
+static MATRICES: [[u16; MATRIX_ELEMENTS]; KNOTS * KNOTS] = knots_from(0);
+static ALBEDO_PAIRS: [[u16; ALBEDOS]; KNOTS * KNOTS] = knots_from(MATRIX_ELEMENTS * KNOTS * KNOTS);
+
+/// The knots of the part that starts at the element `start`.
+const fn knots_from<const K: usize>(start: usize) -> [[u16; K]; KNOTS * KNOTS] {
+    let mut knots = [[0; K]; KNOTS * KNOTS];
+    let mut i = 0;
+    while i < K * KNOTS * KNOTS {
+        let at = 2 * (start + i);
+        knots[i / K][i % K] = u16::from_le_bytes([BYTES[at], BYTES[at + 1]]);
+        i += 1;
+    }
+    knots
+}
 
 /// The elements A, B, D and E, interpolated linearly at √α = `root` and √(1 − μ) = `incidence`.
-pub(crate) fn matrix(root: f64, incidence: f64) -> [f64; 4] {
-    let mut elements = interpolated::<MATRIX_ELEMENTS>(0, root, incidence);
+#[inline]
+pub(crate) fn matrix(root: f64, incidence: f64) -> [f64; MATRIX_ELEMENTS] {
+    let mut elements = interpolated(&MATRICES, knot_and_rest(root), knot_and_rest(incidence));
     for (element, scale) in elements.iter_mut().zip(MATRIX_SCALES) {
         *element *= scale;
     }
@@ -30,30 +46,33 @@ pub(crate) fn matrix(root: f64, incidence: f64) -> [f64; 4] {
 }
 
 /// The albedos n_A and f_A, interpolated linearly at √α = `root` and tan(θ/2) + tan(δ/2) = 2·`incidence`.
-pub(crate) fn albedos(root: f64, incidence: f64) -> [f64; 2] {
-    interpolated::<ALBEDOS>(MATRIX_ELEMENTS * KNOTS * KNOTS, root, incidence)
+#[inline]
+pub(crate) fn albedos(root: f64, incidence: f64) -> [f64; ALBEDOS] {
+    interpolated(&ALBEDO_PAIRS, knot_and_rest(root), knot_and_rest(incidence))
 }
 
-/// Interpolates `K` elements of the part that starts at the element `start`, as shares of their largest
-/// values. Both coordinates are in \[0, 1\], to which they are clamped.
-fn interpolated<const K: usize>(start: usize, x: f64, y: f64) -> [f64; K] {
-    let ((i, u), (j, v)) = (knot_and_rest(x), knot_and_rest(y));
+/// Interpolates `K` elements, as shares of their largest values.
+#[inline(always)]
+fn interpolated<const K: usize>(
+    knots: &[[u16; K]; KNOTS * KNOTS],
+    (i, u): (usize, f64),
+    (j, v): (usize, f64),
+) -> [f64; K] {
     let mut sum = [0.0; K];
     for (i, u) in [(i, 1.0 - u), (i + 1, u)] {
-        // Two knots side by side.
-        let first = 2 * (start + (i * KNOTS + j) * K);
-        let (near, far) = BYTES[first..first + 4 * K].split_at(2 * K);
-        for (knot, v) in [(near, 1.0 - v), (far, v)] {
+        for (j, v) in [(j, 1.0 - v), (j + 1, v)] {
             let weight = u * v * (1.0 / COUNTS);
-            for (sum, bytes) in sum.iter_mut().zip(knot.chunks_exact(2)) {
-                *sum += weight * f64::from(u16::from_le_bytes([bytes[0], bytes[1]]));
+            for (sum, count) in sum.iter_mut().zip(knots[i * KNOTS + j]) {
+                *sum += weight * f64::from(count);
             }
         }
     }
     sum
 }
 
-/// The knot at or below `share` of the whole range, the last but one at most, and the rest.
+/// The knot at or below `share` of the whole range, the last but one at most, and the rest. The share is clamped to
+/// \[0, 1\].
+#[inline(always)]
 fn knot_and_rest(share: f64) -> (usize, f64) {
     let at = share.clamp(0.0, 1.0) * (KNOTS - 1) as f64;
     let knot = (at as usize).min(KNOTS - 2);

@@ -28,9 +28,13 @@ mod lanes_tests;
 #[cfg(feature = "ltc")]
 mod ltc_family;
 #[cfg(feature = "ltc")]
+mod ltc_from_ggx;
+#[cfg(feature = "ltc")]
 mod ltc_lobe;
 #[cfg(feature = "ltc")]
 mod ltc_lobes;
+#[cfg(feature = "ltc")]
+mod ltc_majorant;
 #[cfg(feature = "ltc")]
 mod ltc_table;
 #[cfg(all(test, feature = "cull"))]
@@ -68,6 +72,8 @@ pub use lambert::LambertLobe;
 pub use lambert_family::LambertFamily;
 #[cfg(feature = "ltc")]
 pub use ltc_family::LtcFamily;
+#[cfg(all(feature = "cull", feature = "ltc"))]
+pub(crate) use ltc_from_ggx::GgxSurfaces;
 #[cfg(feature = "ltc")]
 pub use ltc_lobe::LtcLobe;
 pub use masking::{HeightCorrelated, MaskingShadowing, Separable};
@@ -184,6 +190,24 @@ pub trait Lobe {
         Self: Sized + 'a,
     {
         value_per_lane(lobe_of, outgoing)
+    }
+
+    /// Whether the light of each lane is certainly too faint: whether `flux` times the value towards the end of `way`,
+    /// over its squared length, is below `least`, as it rounds too. `None` if that takes as long as the value.
+    #[doc(hidden)]
+    #[must_use]
+    #[inline(always)]
+    fn is_fainter_in_lanes<N: Single>(
+        _: &LobeNumbers<N>,
+        _flux: N,
+        _way: Vector3<N>,
+        _length_squared: N,
+        _least: N,
+    ) -> Option<N::Mask>
+    where
+        Self: Sized,
+    {
+        None
     }
 
     /// Computes the [majorant](Majorant) of one lobe in each lane. `lobe_of` gives that of a lane.

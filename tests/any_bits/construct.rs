@@ -48,7 +48,12 @@ fn glossy(bits: &mut Bits, cameras: &[AnyCamera]) {
         return;
     };
     let incidence = Incidence { normal, incoming };
-    probe::light(LtcLobe::new(ggx, NoFresnel, incidence), cameras);
+    let lobe = LtcLobe::new(ggx, NoFresnel, incidence);
+    assert_eq!(
+        LtcLobe::many([(ggx, NoFresnel, incidence)]).next(),
+        Some(lobe)
+    );
+    probe::light(lobe, cameras);
     let elements = [(); 4].map(|()| bits.number());
     if let Ok(lobe) = LtcLobe::with_matrix(elements, bits.number(), incidence) {
         probe::light(lobe, cameras);

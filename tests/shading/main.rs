@@ -17,6 +17,7 @@ mod clusters;
 mod frame;
 mod receivers;
 mod scalar;
+mod transformed;
 
 use frame::{Frame, bits, frame};
 

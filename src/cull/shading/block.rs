@@ -174,6 +174,7 @@ pub(super) fn evaluate_block<S: Simd, D: Decision, L: ShadedLight, R: ReceiverLa
     let mut estimates = BlockEstimates::NONE;
     let mut reflected = [0.0; LANES];
     let list = list.with_any_weights();
+    let mut quick = QuickTests::default();
     for (turn, light) in list.lights.iter().enumerate() {
         let splat = Lights::broadcast(simd, lights, *light);
         estimates.light = *light;
@@ -181,13 +182,21 @@ pub(super) fn evaluate_block<S: Simd, D: Decision, L: ShadedLight, R: ReceiverLa
         for part in 0..parts::<S>() {
             let lobe = lights.lobes.get(*light as usize);
             let points = block.part(simd, part);
+            let faintest = if quick.pay() {
+                settings.decision.faintest(splat.xi)
+            } else {
+                None
+            };
             let arriving = L::arriving(
                 settings.least_distance_squared,
+                faintest,
                 &splat,
                 #[inline(always)]
                 |_| lobe,
                 &points,
             );
+            quick.passed += u32::from(arriving.is_some());
+            quick.count += 1;
             let decided = arriving.and_then(
                 #[inline(always)]
                 |arriving| {
@@ -218,6 +227,21 @@ pub(super) fn evaluate_block<S: Simd, D: Decision, L: ShadedLight, R: ReceiverLa
         if estimates.accepted != 0 {
             each(&estimates, &reflected);
         }
+    }
+}
+
+/// How many lights of a list have arrived so far, of all, in parts of a block.
+#[derive(Default)]
+struct QuickTests {
+    passed: u32,
+    count: u32,
+}
+
+impl QuickTests {
+    /// Whether it pays to look whether a light is too faint before it is evaluated: unless most arrive.
+    #[inline(always)]
+    fn pay(&self) -> bool {
+        2 * self.passed <= self.count + 8
     }
 }
 

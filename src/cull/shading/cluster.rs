@@ -17,6 +17,7 @@ impl ShadedLight for Vsgl {
     #[inline(always)]
     fn arriving<'a, S: Simd>(
         _: f32,
+        _: Option<F32Lanes<S>>,
         lights: &Lights<F32Lanes<S>>,
         _: impl Fn(usize) -> Option<&'a Self>,
         points: &Points<F32Lanes<S>>,

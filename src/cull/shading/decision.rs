@@ -6,7 +6,7 @@ use super::kernel::{Arriving, Evaluated};
 use super::receiver::ReceiverLanes;
 use crate::cull::receivers::WeightedList;
 use crate::light::Roulette;
-use crate::num::{F32Lanes, Real};
+use crate::num::{F32Lanes, Real, Single};
 
 /// How a [`RadianceEstimator`](crate::RadianceEstimator) decides which lights of a list a point counts, and with
 /// which weight: [`AtPoint`], [`AtReceiver`] or [`InList`].
@@ -17,6 +17,13 @@ pub trait Decision: Sized {
     /// Whether lists bring weights.
     #[doc(hidden)]
     const HAS_WEIGHTS: bool;
+
+    /// The radiance below which what arrives cannot count, for lights with these ξ, if there is any.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn faintest<N: Single>(&self, _xi: N) -> Option<N> {
+        None
+    }
 
     /// Decides in each lane whether what arrives counts. `None` if it does nowhere.
     #[doc(hidden)]
@@ -91,6 +98,11 @@ impl Decision for AtPoint {
     type List<'l> = &'l [u32];
 
     const HAS_WEIGHTS: bool = false;
+
+    #[inline(always)]
+    fn faintest<N: Single>(&self, xi: N) -> Option<N> {
+        Some(xi * self.roulette.delta())
+    }
 
     #[inline(always)]
     fn decide<S: Simd>(

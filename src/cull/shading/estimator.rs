@@ -376,7 +376,7 @@ impl<D: Decision> RadianceEstimator<D> {
         block: &ReceiverBlock<R>,
         mut each: impl FnMut(&BlockEstimates, &[f32; PointBlock::LEN]),
     ) {
-        let (settings, points, each) = (&self.settings, block.points(), &mut each);
+        let (settings, points) = (&self.settings, block.points());
         dispatch!(self.level, simd => evaluate_block(
             simd,
             settings,
@@ -385,7 +385,10 @@ impl<D: Decision> RadianceEstimator<D> {
             points,
             #[inline(always)]
             |part| block.part(simd, part),
-            each,
+            #[inline(always)]
+            |estimates: &BlockEstimates, reflected: &[f32; PointBlock::LEN]| {
+                each(estimates, reflected);
+            },
         ));
     }
 

@@ -130,10 +130,12 @@ pub trait ShadedLight: Sized {
     fn lines() -> usize;
 
     /// Evaluates what a light sends to a point in each lane, over a squared distance of at least `least`. `None` if
-    /// it arrives in no lane. `kept_of` gives what is kept of a lane's light beside its numbers.
+    /// it arrives in no lane, and if it is quick to see that its radiance is below `faintest` in all. `kept_of` gives
+    /// what is kept of a lane's light beside its numbers.
     #[doc(hidden)]
     fn arriving<'a, S: Simd>(
         least: f32,
+        faintest: Option<F32Lanes<S>>,
         lights: &Lights<F32Lanes<S>>,
         kept_of: impl Fn(usize) -> Option<&'a Self>,
         points: &Points<F32Lanes<S>>,
@@ -155,6 +157,7 @@ impl<L: Lobe> ShadedLight for L {
     #[inline(always)]
     fn arriving<'a, S: Simd>(
         least: f32,
+        faintest: Option<F32Lanes<S>>,
         lights: &Lights<F32Lanes<S>>,
         lobe_of: impl Fn(usize) -> Option<&'a Self>,
         points: &Points<F32Lanes<S>>,
@@ -162,7 +165,7 @@ impl<L: Lobe> ShadedLight for L {
     where
         Self: 'a,
     {
-        arriving(least, lights, lobe_of, points)
+        arriving(least, faintest, lights, lobe_of, points)
     }
 }
 
@@ -172,13 +175,15 @@ const DARK_SINE_SQUARED: f32 = 9.094_947e-13;
 /// Keeps the square of n·w away from where products underflow.
 const LEAST_DARK_SQUARE: f32 = 1e-30;
 
-/// Evaluates what a light sends to a point in each lane. `None` if it arrives in no lane.
+/// Evaluates what a light sends to a point in each lane. `None` if it arrives in no lane, and if the lobe sees without a
+/// division that its radiance is below `faintest` in all.
 ///
 /// Direction and intensity are those of scalar code. Where every lane is dark, because the light faces away or is
 /// below the point's horizon, there is neither a root nor a division.
 #[inline(always)]
 fn arriving<'a, S: Simd, L: Lobe + 'a>(
     least: f32,
+    faintest: Option<F32Lanes<S>>,
     lights: &Lights<F32Lanes<S>>,
     lobe_of: impl Fn(usize) -> Option<&'a L>,
     points: &Points<F32Lanes<S>>,
@@ -194,6 +199,16 @@ fn arriving<'a, S: Simd, L: Lobe + 'a>(
     }
     if !may_be_lit.any_true() {
         return None;
+    }
+    let is_fainter = faintest.and_then(
+        #[inline(always)]
+        |least| L::is_fainter_in_lanes(&lights.numbers, lights.flux, way, length_squared, least),
+    );
+    if let Some(is_fainter) = is_fainter {
+        may_be_lit &= !is_fainter;
+        if !may_be_lit.any_true() {
+            return None;
+        }
     }
     let direction = unit(way, length_squared);
     let intensity = lights.flux * L::value_in_lanes(&lights.numbers, lobe_of, direction);

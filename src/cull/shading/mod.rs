@@ -6,7 +6,8 @@
 //! each lane, and as many lines are transposed (`pairs`). Both call one function (`kernel`, and `cluster` for
 //! clusters of lights).
 //!
-//! A receiver (`receiver`) is a point with a lobe of its own, that of light from the eye.
+//! A receiver (`receiver`) is a point with a lobe of its own, that of light from the eye. Transformed cosines are made in
+//! lanes too (`transformed`).
 //!
 //! What arrives at a point is known before it is decided whether it counts. There are three ways to decide
 //! (`decision`): by what arrives, by what the receiver reflects of it, and not at all, where lists were drawn as
@@ -24,6 +25,8 @@ mod kernel;
 mod pairs;
 mod point;
 mod receiver;
+#[cfg(feature = "ltc")]
+mod transformed;
 
 pub use batch::ShadingBatch;
 pub use block::{BlockEstimates, PointBlock};

@@ -167,6 +167,8 @@ impl<S: Simd, R: FilledLanes<S>> Pairs<S, R> {
         let lobe_of = |lane: usize| lights.lobes.get(self.lights[lane] as usize);
         let arriving = L::arriving(
             settings.least_distance_squared,
+            // With other lights and points in each lane, one of them counts nearly always.
+            None,
             &gathered,
             lobe_of,
             &self.points,

@@ -14,6 +14,14 @@ pub trait Model: Bounded<Shape = Ellipsoid> + Copy + 'static {
     const NAME: &str;
 
     fn new(gloss: Gloss, incidence: Incidence) -> Self;
+
+    /// Those of many surfaces.
+    fn many(
+        gloss: Gloss,
+        incidences: impl Iterator<Item = Incidence>,
+    ) -> impl Iterator<Item = Self> {
+        incidences.map(move |incidence| Self::new(gloss, incidence))
+    }
 }
 
 impl Model for GgxLobe<Schlick> {
@@ -29,6 +37,13 @@ impl Model for LtcLobe {
 
     fn new(gloss: Gloss, incidence: Incidence) -> Self {
         LtcLobe::new(gloss.ggx, gloss.fresnel, incidence)
+    }
+
+    fn many(
+        gloss: Gloss,
+        incidences: impl Iterator<Item = Incidence>,
+    ) -> impl Iterator<Item = Self> {
+        LtcLobe::many(incidences.map(move |incidence| (gloss.ggx, gloss.fresnel, incidence)))
     }
 }
 
@@ -48,6 +63,10 @@ impl Group {
             for tile in subregion.grid.tiles() {
                 for interval in 0..subregion.depths.intervals() {
                     let pixels = subregion.grid.pixels(tile).pixels();
+                    // By squares of 4×4, so that those of a vector see much the same lights.
+                    let mut pixels: Vec<_> = pixels.collect();
+                    pixels.sort_by_key(|[x, y]| [y / 4, x / 4]);
+                    let pixels = pixels.into_iter();
                     let pixels = pixels.map(|pixel| interleave.join_pixel(k, pixel));
                     let is_here = |pixel: &[u32; 2]| {
                         let depth = surfaces.at(*pixel).depth;
@@ -149,23 +168,39 @@ impl Setting<'_> {
     fn parts<M: Model>(&self) -> Vec<Part<M>> {
         let (interleave, count) = (&self.interleave, self.lights.len() as u32);
         let part = |subregion| {
-            let mut part = Part {
-                lights: Vec::new(),
-                tints: Vec::new(),
+            let lights = || {
+                let locals = 0..interleave.lights_in(subregion, count);
+                let indices = locals.map(|local| interleave.join_light(subregion, local));
+                indices.map(|index| &self.lights[index as usize])
             };
-            for local in 0..interleave.lights_in(subregion, count) {
-                let light = &self.lights[interleave.join_light(subregion, local) as usize];
-                let (vpl, lobe) = (
-                    &light.vpl,
-                    M::new(self.gloss[0], light.vpl.lobe().incidence()),
-                );
-                let vpl = Vpl::new(vpl.position(), vpl.flux(), lobe).expect("it was one");
-                part.lights.push((vpl, light.xi));
-                part.tints.push(light.tint.into());
+            let incidences = lights().map(|light| light.vpl.lobe().incidence());
+            let lobes = M::many(self.gloss[0], incidences);
+            let made = lights().zip(lobes).map(|(light, lobe)| {
+                let vpl = Vpl::new(light.vpl.position(), light.vpl.flux(), lobe);
+                (vpl.expect("it was one"), light.xi)
+            });
+            Part {
+                lights: made.collect(),
+                tints: lights().map(|light| light.tint.into()).collect(),
             }
-            part
         };
         (0..interleave.subregions()).map(part).collect()
+    }
+
+    /// The position of each pixel's surface, and how light from the eye would arrive there.
+    fn seen(&self) -> Vec<(Vec3, Incidence)> {
+        let eye = self.subject.camera.to_world_space(Vec3::ZERO);
+        let direction = |v| Direction::new(v).unwrap_or(Direction::Y);
+        let surfaces = self.subject.surfaces.surfaces.iter();
+        surfaces
+            .map(|surface| {
+                let incidence = Incidence {
+                    normal: direction(surface.normal),
+                    incoming: direction(eye - surface.position),
+                };
+                (surface.position, incidence)
+            })
+            .collect()
     }
 
     /// Sums over the list of each tile and depth interval, sixteen receivers at a time.
@@ -175,13 +210,12 @@ impl Setting<'_> {
         roulette: &Roulette,
         list_of: impl Fn(usize, [u32; 2], u32) -> Vec<u32>,
     ) -> (Picture, [f64; 2], Vec<f64>) {
-        let surfaces = &self.subject.surfaces;
-        let eye = self.subject.camera.to_world_space(Vec3::ZERO);
+        let seen = self.seen();
         let frame = self.subject.frame(self.interleave, self.delta);
         let estimator = RadianceEstimator::new(roulette)
             .with_least_distance_squared(frame.least_distance_squared)
             .expect("a mean of areas");
-        let mut picture = vec![[0.0; 3]; surfaces.surfaces.len()];
+        let mut picture = vec![[0.0; 3]; seen.len()];
         let mut counts = [0_u64; 3];
         let mut batch = ShadingBatch::new();
         let is_same = |a: &Group, b: &Group| a.subregion == b.subregion;
@@ -194,17 +228,11 @@ impl Setting<'_> {
                 let list = list_of(group.subregion, group.tile, group.interval);
                 counts[0] += group.pixels.len() as u64;
                 counts[1] += (group.pixels.len() * list.len()) as u64;
-                let mut receivers = group.pixels.iter().map(|pixel| {
-                    let surface = &surfaces.surfaces[*pixel];
-                    let direction = |v| Direction::new(v).unwrap_or(Direction::Y);
-                    let incidence = Incidence {
-                        normal: direction(surface.normal),
-                        incoming: direction(eye - surface.position),
-                    };
-                    Receiver {
-                        position: surface.position,
-                        lobe: M::new(self.gloss[1], incidence),
-                    }
+                let surfaces = || group.pixels.iter().map(|pixel| &seen[*pixel]);
+                let lobes = M::many(self.gloss[1], surfaces().map(|(_, incidence)| *incidence));
+                let mut receivers = surfaces().zip(lobes).map(|((position, _), lobe)| Receiver {
+                    position: *position,
+                    lobe,
                 });
                 for pixels in group.pixels.chunks(PointBlock::LEN) {
                     let Some(block) = ReceiverBlock::take(&mut receivers) else {
