@@ -2,11 +2,11 @@ use alloc::vec::Vec;
 use core::borrow::Borrow;
 use core::marker::PhantomData;
 
-use fearless_simd::{Simd, SimdBase, dispatch};
+use fearless_simd::{Simd, SimdBase, SimdMask, dispatch};
 
 use super::culler::widest;
 use super::lanes::{LANES, Record, compress, load_records, store_records, write_chosen};
-use crate::num::F32Lanes;
+use crate::num::{F32Lanes, Twice};
 use crate::project::Projected;
 use crate::view::ViewBounds;
 
@@ -125,23 +125,47 @@ impl<P: Projected> LightBatch<P> {
         self.lights().iter().copied().zip(shapes)
     }
 
-    /// Adds a vector of lights, of which those in `chosen` are kept: their indices and fields.
+    /// Adds two vectors of lights, of which those in `chosen` are kept: their indices and fields. There must be
+    /// [room](Self::make_room).
     #[inline(always)]
     pub(super) fn append<S: Simd>(
         &mut self,
         simd: S,
-        chosen: S::mask32s,
+        Twice(first, second): Twice<S::mask32s>,
         lights: &[u32],
-        fields: &P::Fields<F32Lanes<S>>,
+        fields: &P::Fields<Twice<F32Lanes<S>>>,
     ) {
-        let (start, lanes) = (self.len, S::f32s::LEN);
-        self.make_room(start + lanes);
-        store_records::<S, P>(simd, fields, chosen, &mut self.records[start..]);
-        let numbers = S::u32s::from_slice(simd, &lights[..lanes]);
-        self.len += write_chosen::<S>(numbers, chosen, &mut self.lights[start..]);
-        for (ends, end) in self.bounds.iter_mut().zip(ends(P::bounds_of(fields))) {
-            compress::<S>(end, chosen).store_slice(&mut ends[start..start + lanes]);
+        let lanes = S::f32s::LEN;
+        let (start, end) = (self.len, self.len + 2 * lanes);
+        let lights = &lights[..2 * lanes];
+        let places = &mut self.lights[start..end];
+        let bounds = self.bounds.iter_mut().map(|ends| &mut ends[start..end]);
+        let bounds = bounds.zip(ends(P::bounds_of(fields)));
+        let mut count = lanes;
+        // Most vectors are full.
+        if (first & second).all_true() {
+            places.copy_from_slice(lights);
+            for (ends, Twice(a, b)) in bounds {
+                a.0.store_slice(&mut ends[..lanes]);
+                b.0.store_slice(&mut ends[lanes..]);
+            }
+            self.len = end;
+        } else {
+            let load = |lights: &[u32]| S::u32s::from_slice(simd, lights);
+            count = write_chosen::<S>(load(&lights[..lanes]), first, places).min(lanes);
+            let numbers = load(&lights[lanes..]);
+            self.len += count + write_chosen::<S>(numbers, second, &mut places[count..]);
+            for (ends, Twice(a, b)) in bounds {
+                compress::<S>(a, first).store_slice(&mut ends[..lanes]);
+                compress::<S>(b, second).store_slice(&mut ends[count..count + lanes]);
+            }
         }
+        // Last, since it branches: what is computed for it is found by then.
+        let records = &mut self.records[start..end];
+        let fields = fields.as_ref().iter();
+        store_records(simd, fields.clone().map(|field| field.0), first, records);
+        let records = &mut records[count..];
+        store_records(simd, fields.map(|field| field.1), second, records);
     }
 
     #[inline(always)]
@@ -208,17 +232,24 @@ impl<P: Projected> LightBatch<P> {
         &self.lights[..self.len]
     }
 
-    /// Makes room for `count` lights, and for a vector after them.
+    /// Makes room for `count` lights in all, and for a vector after them.
     #[inline(always)]
-    fn make_room(&mut self, count: usize) {
+    pub(super) fn make_room(&mut self, count: usize) {
         let room = count + LANES;
         if self.records.len() < room {
-            grow(&mut self.records, room, Record([0.0; LANES]));
-            for ends in &mut self.bounds {
-                grow(ends, room, 0.0);
-            }
-            grow(&mut self.lights, room, 0);
+            self.grow(room);
         }
+    }
+
+    /// Not inlined: beside its calls, the numbers of vectors would not stay in registers.
+    #[cold]
+    #[inline(never)]
+    fn grow(&mut self, room: usize) {
+        grow(&mut self.records, room, Record([0.0; LANES]));
+        for ends in &mut self.bounds {
+            grow(ends, room, 0.0);
+        }
+        grow(&mut self.lights, room, 0);
     }
 }
 

@@ -16,7 +16,7 @@ use crate::bound::{
 };
 use crate::light::{Roulette, Vpl, Vsgl, Xi};
 use crate::lobe::Lobe;
-use crate::num::{F32Lanes, Quad, Real, Single, Vector3, load_quads};
+use crate::num::{F32Lanes, Quad, Real, Single, Twice, Vector3, load_quads_twice};
 use crate::project::{Project, Projected};
 use crate::view::{Camera, Projection};
 
@@ -279,27 +279,31 @@ impl<I: BatchInput> Group<I> {
         frame: &Frame<P>,
         batch: &mut LightBatch<<I::Shape as Project>::Projected<P>>,
     ) {
-        // The processor can begin one vector while another waits for its roots.
-        for first in (0..count).step_by(S::f32s::LEN) {
-            let wanted = mask_of_first(simd, count - first);
+        batch.make_room(batch.len() + GROUP);
+        for first in (0..count).step_by(2 * S::f32s::LEN) {
             let (fields, reaches) = self.project(simd, first, frame);
+            let left = count - first;
+            let wanted = Twice(
+                mask_of_first(simd, left),
+                mask_of_first(simd, left.saturating_sub(S::f32s::LEN)),
+            );
             batch.append(simd, wanted & reaches, &self.lights[first..], &fields);
         }
     }
 
-    /// Projects a vector of items. Returns the fields of the shapes, and which of them are not empty.
+    /// Projects two vectors of items. Returns the fields of the shapes, and which of them are not empty.
     #[inline(always)]
     fn project<S: Simd, P: Projection>(
         &self,
         simd: S,
         first: usize,
         frame: &Frame<P>,
-    ) -> (Fields<I, S, P>, S::mask32s) {
-        let lanes = first..first + S::f32s::LEN;
-        let [x, y, z, flux] = load_quads(simd, &self.placements[lanes.clone()]);
-        let mut quads = [[F32Lanes::new(simd, 0.0); 4]; MAX_QUADS];
+    ) -> (Fields<I, S, P>, Twice<S::mask32s>) {
+        let lanes = first..first + 2 * S::f32s::LEN;
+        let [x, y, z, flux] = load_quads_twice(simd, &self.placements[lanes.clone()]);
+        let mut quads = [[x.zero(); 4]; MAX_QUADS];
         for (vectors, quads) in quads[..I::QUADS].iter_mut().zip(&self.quads) {
-            *vectors = load_quads(simd, &quads[lanes.clone()]);
+            *vectors = load_quads_twice(simd, &quads[lanes.clone()]);
         }
         let parameter = flux.load(&self.parameters[lanes.clone()]);
         let scale = I::scale(&frame.roulette, flux, parameter);
@@ -312,6 +316,6 @@ impl<I: BatchInput> Group<I> {
     }
 }
 
-/// The fields of the projected shapes of a vector of items.
+/// The fields of the projected shapes of two vectors of items.
 type Fields<I, S, P> =
-    <<<I as BatchInput>::Shape as Project>::Projected<P> as Projected>::Fields<F32Lanes<S>>;
+    <<<I as BatchInput>::Shape as Project>::Projected<P> as Projected>::Fields<Twice<F32Lanes<S>>>;

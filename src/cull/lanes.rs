@@ -123,15 +123,15 @@ pub(super) fn load_lines<'a, S: Simd>(
 /// Writes a record for each lane of `fields`, the inverse of [`load_records`]: those of the lanes in `chosen` to
 /// the front of `records`. The rest of as many as there are lanes may change too.
 #[inline(always)]
-pub(super) fn store_records<S: Simd, P: Projected>(
+pub(super) fn store_records<S: Simd>(
     simd: S,
-    fields: &P::Fields<F32Lanes<S>>,
+    fields: impl Iterator<Item = F32Lanes<S>>,
     chosen: S::mask32s,
     records: &mut [Record],
 ) {
     let mut vectors = [F32Lanes::new(simd, 0.0); LANES];
-    for (vector, field) in vectors.iter_mut().zip(fields.as_ref()) {
-        *vector = *field;
+    for (vector, field) in vectors.iter_mut().zip(fields) {
+        *vector = field;
     }
     let vectors = transpose(vectors);
     let records = &mut records[..S::f32s::LEN];

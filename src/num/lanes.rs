@@ -307,6 +307,8 @@ impl<S: Simd> Real for F64Lanes<S> {
 }
 
 impl<S: Simd> Single for F32Lanes<S> {
+    const LANES: usize = S::f32s::LEN;
+
     type Double = F64Lanes<S>;
 
     #[inline(always)]

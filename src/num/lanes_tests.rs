@@ -3,7 +3,7 @@
 use fearless_simd::{Level, Simd, SimdBase, dispatch};
 
 use super::lanes::load_quads;
-use super::{F32Lanes, MAX_LANES, Real, Single};
+use super::{F32Lanes, MAX_LANES, Real, Single, Twice, load_quads_twice};
 
 /// A test that runs with vectors of every width that the processor supports.
 pub(crate) trait LaneTest {
@@ -116,6 +116,71 @@ impl LaneTest for SameAsScalars {
 #[test]
 fn lanes_do_what_scalars_do() {
     at_every_level(&SameAsScalars);
+}
+
+struct TwiceTheSame;
+
+impl LaneTest for TwiceTheSame {
+    fn run<S: Simd>(&self, simd: S) {
+        let operations = operations::<Twice<F32Lanes<S>>>()
+            .into_iter()
+            .zip(self::operations::<F32Lanes<S>>());
+        let reversed: [f32; MAX_LANES] = core::array::from_fn(|i| NUMBERS[MAX_LANES - 1 - i]);
+        let same = |a, b| {
+            to_array::<S>(a)
+                .into_iter()
+                .zip(to_array(b))
+                .all(|(a, b)| is_same(a, b))
+        };
+        for ((name, of_both), (_, of_one)) in operations {
+            for start in (0..MAX_LANES).step_by(S::f32s::LEN) {
+                let like = F32Lanes::new(simd, 0.0);
+                let (a, b) = (like.load(&NUMBERS[start..]), like.load(&reversed[start..]));
+                for c in NUMBERS.map(|c| F32Lanes::new(simd, c)) {
+                    let Twice(first, second) = of_both(Twice(a, b), Twice(c, a));
+                    assert!(same(first, of_one(a, c)), "{name}");
+                    assert!(same(second, of_one(b, a)), "{name}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn twice_does_what_each_of_two_does() {
+    at_every_level(&TwiceTheSame);
+}
+
+struct NumberedOn;
+
+impl LaneTest for NumberedOn {
+    fn run<S: Simd>(&self, simd: S) {
+        let (lanes, zero) = (S::f32s::LEN, F32Lanes::new(simd, 0.0));
+        let both = Twice(zero, zero);
+        let place = |lane: usize| lane as f32;
+        let gathered = both.gather(place);
+        let per_lane = Single::per_lane([both], |lane, [zero]| place(lane) + zero);
+        let numbers: [f32; 2 * MAX_LANES] = core::array::from_fn(place);
+        let quads = numbers.map(|number| [number, 0.5, number + 100.0, number + 200.0]);
+        let [x, half, z, w] = load_quads_twice(simd, &quads[..2 * lanes]);
+        let sums = Single::per_lane_quads([x, half, z, w], z.gt(w), |[x, half, z, w], flag| {
+            [[x, half, z, w], [x + half, z + w, f32::from(flag), 0.0]]
+        });
+        let all = [gathered, per_lane, both.load(&numbers), x, sums[0][0]];
+        for (lane, number) in numbers[..2 * lanes].iter().enumerate() {
+            let of = |Twice(first, second)| {
+                [to_array::<S>(first), to_array(second)][lane / lanes][lane % lanes]
+            };
+            assert_eq!(all.map(of), [*number; 5]);
+            let expected = [number + 0.5, 2.0 * number + 300.0, 0.0, 0.0];
+            assert_eq!(sums[1].map(of), expected);
+        }
+    }
+}
+
+#[test]
+fn the_lanes_of_a_second_vector_are_numbered_on() {
+    at_every_level(&NumberedOn);
 }
 
 #[test]

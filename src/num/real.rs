@@ -98,6 +98,9 @@ pub trait Real:
 
 /// A [`Real`] in single precision: an `f32`, or one in each lane.
 pub trait Single: Real<Element = f32> {
+    /// The number of lanes.
+    const LANES: usize;
+
     /// As many lanes in double precision, with the same masks.
     type Double: Double<Mask = Self::Mask>;
 

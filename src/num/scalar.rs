@@ -80,6 +80,8 @@ real!(f32, sqrt);
 real!(f64, sqrt_f64);
 
 impl Single for f32 {
+    const LANES: usize = 1;
+
     type Double = f64;
 
     #[inline(always)]
