@@ -4,7 +4,7 @@ use super::shape::{Quads, padded};
 use super::sphere::Spheres;
 use super::{BoundStrategy, Bounded, Paper, Sphere};
 use crate::lobe::ConstantLobe;
-use crate::num::{Single, Vector3, round_up, sqrt};
+use crate::num::{Single, round_up, sqrt};
 
 /// Pays for the rounding of √(1/4π).
 const RADIUS_ROUNDINGS: u16 = 2;
@@ -30,11 +30,9 @@ impl BoundStrategy<ConstantLobe> for Paper {
 
     #[inline(always)]
     fn unit_bounds<N: Single>(&self, quads: &Quads<N>, _: &[()]) -> Spheres<N> {
-        let like = quads[0][0];
-        let sphere = self.unit_bound(&ConstantLobe).lanes();
         Spheres {
-            center: Vector3::splat(like, sphere.center),
-            radius: like.splat(sphere.radius),
+            center: None,
+            radius: quads[0][0].splat(self.unit_bound(&ConstantLobe).radius()),
         }
     }
 }

@@ -2,7 +2,7 @@ use glam::{Mat3, Vec3};
 
 use super::shape::{Quads, Shape, ShapeLanes, rounding_of_sum, scaled};
 use crate::base::{Error, finite, orthonormal};
-use crate::num::{Matrix3, Single, Vector3};
+use crate::num::{Matrix3, Real, Single, Vector3};
 
 /// Pays for the rounding of the semi-axes' growth and of their product with it.
 const GROWTH_ROUNDINGS: u16 = 4;
@@ -68,7 +68,8 @@ impl Ellipsoid {
     #[inline(always)]
     pub(crate) fn lanes(&self) -> Ellipsoids<f32> {
         Ellipsoids {
-            parts: [self.light.into(), self.offset.into()],
+            light: Some(self.light.into()),
+            offset: self.offset.into(),
             axes: self.rotation.into(),
             semi_axes: self.semi_axes.into(),
         }
@@ -104,8 +105,10 @@ impl Ellipsoid {
 /// An [`Ellipsoid`] in each lane.
 #[derive(Clone, Copy)]
 pub struct Ellipsoids<N> {
-    /// Two vectors whose exact sum is the centre.
-    pub parts: [Vector3<N>; 2],
+    /// The position of the light. `None` for the origin in all lanes: sums with it take no time.
+    pub light: Option<Vector3<N>>,
+    /// The way from there to the centre, which is the exact sum of both.
+    pub offset: Vector3<N>,
     /// R, whose columns are the directions of the axes.
     pub axes: Matrix3<N>,
     pub semi_axes: Vector3<N>,
@@ -115,13 +118,23 @@ impl<N: Single> Ellipsoids<N> {
     #[inline(always)]
     pub fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
         Self {
-            parts: [
-                Vector3::select(mask, yes.parts[0], no.parts[0]),
-                Vector3::select(mask, yes.parts[1], no.parts[1]),
-            ],
+            light: match (yes.light, no.light) {
+                (None, None) => None,
+                _ => Some(Vector3::select(
+                    mask,
+                    yes.light_or_origin(),
+                    no.light_or_origin(),
+                )),
+            },
+            offset: Vector3::select(mask, yes.offset, no.offset),
             axes: Matrix3::select(mask, yes.axes, no.axes),
             semi_axes: Vector3::select(mask, yes.semi_axes, no.semi_axes),
         }
+    }
+
+    #[inline(always)]
+    pub fn light_or_origin(&self) -> Vector3<N> {
+        self.light.unwrap_or(Vector3::zero(self.offset.x))
     }
 
     #[inline(always)]
@@ -135,12 +148,23 @@ impl<N: Single> ShapeLanes<N> for Ellipsoids<N> {
     #[inline(always)]
     fn placed(self, position: Vector3<N>, scale: N) -> Self {
         let semi_axes = self.scaled_semi_axes(scale);
-        let [light, offset] = [self.parts[0] * scale, self.parts[1] * scale];
-        let sum = light + offset;
-        let rounding = rounding_of_sum(light) + rounding_of_sum(offset) + rounding_of_sum(sum);
+        let offset = self.offset * scale;
+        let of_offset = rounding_of_sum(offset);
+        let (sum, rounding) = match self.light {
+            Some(light) => {
+                let light = light * scale;
+                let sum = light + offset;
+                (
+                    sum,
+                    rounding_of_sum(light) + of_offset + rounding_of_sum(sum),
+                )
+            }
+            None => (offset, of_offset + of_offset),
+        };
         let growth = (rounding / semi_axes.min_element() + 1.0).round_up(GROWTH_ROUNDINGS);
         Self {
-            parts: [position, sum],
+            light: Some(position),
+            offset: sum,
             axes: self.axes,
             semi_axes: semi_axes * growth,
         }
@@ -159,12 +183,16 @@ impl Ellipsoid {
     #[inline]
     #[must_use]
     pub fn placed(self, position: Vec3, scale: f32) -> Self {
+        let all = |semi_axis: f32| {
+            let semi_axes = Vec3::splat(semi_axis);
+            Self::from_parts(position, Vec3::ZERO, self.rotation, semi_axes)
+        };
+        if self.is_empty() || !scale.is_positive() {
+            return all(0.0);
+        }
         let lanes = self.lanes();
-        let semi_axes = lanes.scaled_semi_axes(scale);
-        let shortest = semi_axes.min_element();
-        if shortest == 0.0 || semi_axes.max_element().is_infinite() {
-            let semi_axes = Vec3::splat(if shortest == 0.0 { 0.0 } else { f32::INFINITY });
-            return Self::from_parts(position, Vec3::ZERO, self.rotation, semi_axes);
+        if lanes.scaled_semi_axes(scale).max_element().is_infinite() {
+            return all(f32::INFINITY);
         }
         Self::from_lanes(lanes.placed(position.into(), scale))
     }
@@ -215,7 +243,8 @@ impl Shape for Ellipsoid {
         let [[q_x, q_y, q_z, o_x], [o_y, o_z, u_x, u_y], quads @ ..] = *quads;
         let [[u_z, v_x, v_y, v_z], [w_x, w_y, w_z, s_x], [s_y, s_z, ..]] = quads;
         Ellipsoids {
-            parts: [Vector3::new(q_x, q_y, q_z), Vector3::new(o_x, o_y, o_z)],
+            light: Some(Vector3::new(q_x, q_y, q_z)),
+            offset: Vector3::new(o_x, o_y, o_z),
             axes: Matrix3::new(
                 Vector3::new(u_x, u_y, u_z),
                 Vector3::new(v_x, v_y, v_z),
@@ -227,10 +256,9 @@ impl Shape for Ellipsoid {
 
     #[inline(always)]
     fn from_lanes(lanes: Ellipsoids<f32>) -> Self {
-        let [light, offset] = lanes.parts;
         Self::from_parts(
-            light.into(),
-            offset.into(),
+            lanes.light_or_origin().into(),
+            lanes.offset.into(),
             lanes.axes.into(),
             lanes.semi_axes.into(),
         )

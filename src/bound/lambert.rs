@@ -61,7 +61,7 @@ impl BoundStrategy<LambertLobe> for Paper {
     fn unit_bounds<N: Single>(&self, quads: &Quads<N>, _: &[()]) -> Spheres<N> {
         let (reach, normal) = reach_and_normal(quads);
         Spheres {
-            center: normal * (reach * CENTER),
+            center: Some(normal * (reach * CENTER)),
             radius: (reach * RADIUS).round_up(RADIUS_ROUNDINGS),
         }
     }

@@ -83,7 +83,8 @@ pub(super) fn ellipsoids_along<N: Single>(
     let one = moved.splat(1.0);
     let share = (moved / shortest).min(one);
     Ellipsoids {
-        parts: [Vector3::zero(scale), to_world(frame, center, scale.widen())],
+        light: None,
+        offset: to_world(frame, center, scale.widen()),
         axes: Matrix3::new(
             to_world(frame, axes[0], one),
             to_world(frame, axes[1], one),

@@ -39,7 +39,8 @@ impl<N: Single> Revolved<N> {
         let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
         let moved = longest * (AXES_TILT_ROUNDINGS * UNIT_ROUNDOFF) / shortest;
         Ellipsoids {
-            parts: [Vector3::zero(reach), axis * (self.center * reach)],
+            light: None,
+            offset: axis * (self.center * reach),
             axes: Matrix3::new(axis, v, w),
             semi_axes: semi_axes * (reach * (moved + 1.0)).round_up(SEMI_AXIS_ROUNDINGS),
         }

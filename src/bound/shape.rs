@@ -64,15 +64,11 @@ pub trait ShapeLanes<N: Single>: Copy {
     fn is_empty(&self) -> N::Mask;
 }
 
-/// `length` times `scale`, rounded up. Zero only if one of them is: a product that underflows is clamped.
+/// `length` times `scale`, both positive, rounded up. A product that underflows is clamped.
 #[inline(always)]
 pub(super) fn scaled<N: Single>(length: N, scale: N) -> N {
-    let least = scale.splat(f32::MIN_POSITIVE);
-    let product = (length * scale)
-        .round_up(SCALED_LENGTH_ROUNDINGS)
-        .max(least);
-    let is_positive = length.is_positive() & scale.is_positive();
-    N::select(is_positive, product, scale.zero())
+    let product = (length * scale).round_up(SCALED_LENGTH_ROUNDINGS);
+    product.max(scale.splat(f32::MIN_POSITIVE))
 }
 
 /// Upper bound of the length of the rounding error of `sum`, a vector whose components are rounded once.

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::shape::{Quads, Shape, ShapeLanes, padded, rounding_of_sum, scaled};
 use crate::base::{Error, finite, number_in};
-use crate::num::{Single, Vector3};
+use crate::num::{Real, Single, Vector3};
 
 /// Pays for the sum of the radius and the rounding of the centre.
 const PLACED_RADIUS_ROUNDINGS: u16 = 2;
@@ -36,7 +36,7 @@ impl Sphere {
     #[inline(always)]
     pub(crate) fn lanes(&self) -> Spheres<f32> {
         Spheres {
-            center: self.center.into(),
+            center: Some(self.center.into()),
             radius: self.radius,
         }
     }
@@ -57,7 +57,8 @@ impl Sphere {
 /// A [`Sphere`] in each lane.
 #[derive(Clone, Copy)]
 pub struct Spheres<N> {
-    pub center: Vector3<N>,
+    /// `None` for the origin of all lanes, the light: sums with it take no time.
+    pub center: Option<Vector3<N>>,
     pub radius: N,
 }
 
@@ -65,11 +66,16 @@ impl<N: Single> ShapeLanes<N> for Spheres<N> {
     #[inline(always)]
     fn placed(self, position: Vector3<N>, scale: N) -> Self {
         let radius = scaled(self.radius, scale);
-        let offset = self.center * scale;
-        let center = position + offset;
-        let rounding = rounding_of_sum(offset) + rounding_of_sum(center);
+        let (center, rounding) = match self.center {
+            Some(center) => {
+                let offset = center * scale;
+                let center = position + offset;
+                (center, rounding_of_sum(offset) + rounding_of_sum(center))
+            }
+            None => (position, rounding_of_sum(position)),
+        };
         Self {
-            center,
+            center: Some(center),
             radius: (radius + rounding).round_up(PLACED_RADIUS_ROUNDINGS),
         }
     }
@@ -87,7 +93,7 @@ impl Sphere {
     #[inline]
     #[must_use]
     pub fn placed(self, position: Vec3, scale: f32) -> Self {
-        if scaled(self.radius, scale) == 0.0 {
+        if self.is_empty() || !scale.is_positive() {
             return Self::from_parts(position, 0.0);
         }
         Self::from_lanes(self.lanes().placed(position.into(), scale))
@@ -127,13 +133,13 @@ impl Shape for Sphere {
     fn from_quads<N: Single>(quads: &Quads<N>) -> Spheres<N> {
         let [x, y, z, radius] = quads[0];
         Spheres {
-            center: Vector3::new(x, y, z),
+            center: Some(Vector3::new(x, y, z)),
             radius,
         }
     }
 
     #[inline(always)]
     fn from_lanes(Spheres { center, radius }: Spheres<f32>) -> Self {
-        Self::from_parts(center.into(), radius)
+        Self::from_parts(center.map_or(Vec3::ZERO, Into::into), radius)
     }
 }

@@ -4,7 +4,7 @@ use super::ellipsoid::Ellipsoids;
 use super::shape::{Quads, Shape, ShapeLanes, padded, rounding_of_sum, scaled};
 use super::{Ellipsoid, Sphere};
 use crate::base::Direction;
-use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3, round_up};
+use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3, round_up};
 
 /// Pays for the rounding of r and of its factor for a tilted axis.
 const RADIUS_ROUNDINGS: u16 = 16;
@@ -179,7 +179,8 @@ impl<N: Single> Spheroids<N> {
         let short = (self.radius * growth).round_up(SEMI_AXIS_ROUNDINGS);
         let long = (long * growth).round_up(SEMI_AXIS_ROUNDINGS);
         Ellipsoids {
-            parts: [self.focus, offset],
+            light: Some(self.focus),
+            offset,
             axes: Matrix3::new(self.axis, v, w),
             semi_axes: Vector3::new(long, short, short),
         }
@@ -203,10 +204,9 @@ impl<N: Single> ShapeLanes<N> for Spheroids<N> {
         let focus = position + offset;
         let rounding = rounding_of_sum(offset) + rounding_of_sum(focus);
         let grown = (radius + rounding / self.roughness).round_up(MOVED_RADIUS_ROUNDINGS);
-        let is_exact = is_at_origin | radius.eq(radius.zero());
         Self {
-            focus: Vector3::select(is_exact, position, focus),
-            radius: N::select(is_exact, radius, grown),
+            focus: Vector3::select(is_at_origin, position, focus),
+            radius: N::select(is_at_origin, radius, grown),
             ..self
         }
     }
@@ -224,6 +224,13 @@ impl Spheroid {
     #[inline]
     #[must_use]
     pub fn placed(self, position: Vec3, scale: f32) -> Self {
+        if self.is_empty() || !scale.is_positive() {
+            return Self {
+                focus: position,
+                radius: 0.0,
+                ..self
+            };
+        }
         let Spheroids { focus, radius, .. } = self.lanes().placed(position.into(), scale);
         Self {
             focus: focus.into(),

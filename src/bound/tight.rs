@@ -252,7 +252,8 @@ impl<N: Single> Section<N> {
         let tilt = most / least * (AXES_TILT_ROUNDINGS * UNIT_ROUNDOFF);
         let center = u * self.center[0] + down * self.center[1];
         Ellipsoids {
-            parts: [Vector3::zero(radius), center * radius],
+            light: None,
+            offset: center * radius,
             axes: Matrix3::new(u * cosine + down * sine, down * cosine - u * sine, -across),
             semi_axes: semi_axes * (radius * (tilt + 1.0).round_up(SEMI_AXIS_ROUNDINGS)),
         }

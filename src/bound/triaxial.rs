@@ -117,7 +117,8 @@ pub(super) fn ellipsoids_around<N: Single>(
     let shortest = semi_axes.y.min(semi_axes.z);
     let tilt = semi_axes.x / shortest * (AXES_TILT_ROUNDINGS * UNIT_ROUNDOFF);
     Ellipsoids {
-        parts: [Vector3::zero(radius), u * distance],
+        light: None,
+        offset: u * distance,
         axes: Matrix3::new(u, w.cross(u), w),
         semi_axes: semi_axes * (tilt + 1.0).round_up(SEMI_AXIS_ROUNDINGS),
     }

@@ -30,7 +30,8 @@
 //! moves the image of a point p of the ellipsoid against the box of a tile that holds p by at most
 //!
 //! - (r_max/r_min)(128u + 6δ) for the axes and the elements of M ([`AXES_ROUNDINGS`], [`AXES_DEVIATIONS`]),
-//! - 6u ‖c′‖/r_min for c′ and M c′ ([`CENTER_ROUNDINGS`]),
+//! - 7u (‖c′‖ + ‖o′‖)/r_min for c′ and M c′, where o′ is the way from the light to the centre
+//!   ([`CENTER_ROUNDINGS`], [`OFFSET_ROUNDINGS`]),
 //! - 9u s z/r_min for the box ([`BOX_ROUNDINGS`]), where z ≤ max(c′_z, 0) + r_max is the greatest depth of p.
 //!
 //! The semi-axes are enlarged by r_min times the sum, so the test never misses such a tile.
@@ -48,7 +49,9 @@ use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3};
 use crate::view::{Camera, Perspective, Projection, ViewBounds};
 
 /// Budget for c′ and M c′, in units of the sum of the coordinates of c′.
-const CENTER_ROUNDINGS: f32 = 6.0;
+const CENTER_ROUNDINGS: f32 = 7.0;
+/// Budget for c′, in units of the sum of the coordinates of the offset of the centre from the light.
+const OFFSET_ROUNDINGS: f32 = 7.0;
 /// Budget for the box of a tile, in units of s z.
 const BOX_ROUNDINGS: f32 = 9.0;
 /// Budget for the axes and the elements of M, in units of the longest semi-axis.
@@ -188,7 +191,10 @@ impl<N: Single> Ellipsoids<N> {
         let view = camera.view();
         let semi_axes = self.semi_axes;
         let (shortest, longest) = (semi_axes.min_element(), semi_axes.max_element());
-        let center = view.sum_to_camera_space(self.parts);
+        let rotation = view.rotation_in_lanes(shortest);
+        let light = self.light_or_origin();
+        let offset = rotation * self.offset;
+        let center = view.transform_points(light) + offset;
         let is_finite = semi_axes.is_finite() & center.is_finite();
         let zero = shortest.zero();
         let [low, high] = unbounded(zero);
@@ -200,10 +206,11 @@ impl<N: Single> Ellipsoids<N> {
             return everywhere;
         }
 
-        let axes = view.rotation_in_lanes(shortest) * self.axes;
+        let axes = rotation * self.axes;
         let [xx, xy, xz, yx, yy, yz, m] = triangular_stretch(axes, semi_axes);
         let rounding = margin(camera, center, longest, CENTER_ROUNDINGS, BOX_ROUNDINGS)
-            + view.rounding_of_terms(self.parts);
+            + offset.abs().element_sum() * (OFFSET_ROUNDINGS * UNIT_ROUNDOFF)
+            + view.rounding_of_terms(light);
         let tilt = longest
             * (AXES_ROUNDINGS * UNIT_ROUNDOFF + AXES_DEVIATIONS * view.rotation_deviation());
         let enlarged = (shortest + (rounding + tilt)).round_up(SEMI_AXIS_ROUNDINGS);
@@ -213,7 +220,14 @@ impl<N: Single> Ellipsoids<N> {
         let y = Vector3::new(yx, yy, yz) * factor;
         let z = Vector3::new(factor * 0.0, factor * 0.0, m * factor);
         let c = Vector3::new(x.dot(center), y.dot(center), z.dot(center));
-        let matrix = [x.x, x.y, x.z, y.x, y.y, y.z, z.z];
+        // The bounds of M = 0 hold everything.
+        let [xx, xy, xz, yx, yy, yz, zz, c_x, c_y, c_z] = N::select_all(
+            is_finite,
+            [x.x, x.y, x.z, y.x, y.y, y.z, z.z, c.x, c.y, c.z],
+            [zero; 10],
+        );
+        let matrix = [xx, xy, xz, yx, yy, yz, zz];
+        let c = Vector3::new(c_x, c_y, c_z);
         let ViewBounds {
             across,
             down,
@@ -223,14 +237,12 @@ impl<N: Single> Ellipsoids<N> {
         } else {
             bounds_around(center, reach(axes, semi_axes, enlarged))
         };
-        let [xx, xy, xz, yx, yy, yz, zz] = matrix;
         let [left, right] = across;
         let [bottom, top] = down;
         let [near, far] = depths;
-        let fields = [
+        [
             xx, xy, xz, yx, yy, yz, zz, c.x, c.y, c.z, left, right, bottom, top, near, far,
-        ];
-        N::select_all(is_finite, fields, everywhere)
+        ]
     }
 }
 

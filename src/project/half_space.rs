@@ -40,7 +40,7 @@ impl HalfSpace {
         let point = view.transform_point(self.position());
         let turn = NORMAL_DEVIATIONS * view.rotation_deviation();
         let rounding = (OFFSET_ROUNDINGS * UNIT_ROUNDOFF + turn) * point.length()
-            + view.rounding_of_terms([self.position(), Vec3::ZERO].map(Vector3::from));
+            + view.rounding_of_terms(Vector3::from(self.position()));
         let of_corner = CORNER_ROUNDINGS * UNIT_ROUNDOFF + turn;
         ProjectedHalfSpace {
             normal,

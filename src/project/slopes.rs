@@ -56,35 +56,38 @@ impl<N: Single> TangentPlanes<N> {
         [g, h]: [N; 2],
         [along, across]: [N; 2],
     ) -> [N; 2] {
-        let axis = [first + second, first.abs() + second.abs()];
+        let (axis, axis_terms) = (first + second, first.abs() + second.abs());
         let (own, mixed) = (g * along, h * across);
         let w = own + mixed;
-        let middle = [w * self.depth, (own.abs() + mixed.abs()) * self.depth];
+        let middle_terms = (own.abs() + mixed.abs()) * self.depth;
         let root = (w * w + (g * g + h * h) * self.square).sqrt();
-        self.slopes(axis, middle, root)
+        let [min, max] = self.relative_slopes(w * self.depth, root);
+        let terms = axis_terms + (middle_terms + root) * self.per_square;
+        self.outward([axis + min, axis + max], terms)
     }
 
     /// The slopes of a sphere whose center has the coordinate `across`.
     #[inline(always)]
     pub fn slopes_of_sphere(&self, across: N, radius: N) -> [N; 2] {
-        let middle = [across * self.depth, across.abs() * self.depth];
+        let middle = across * self.depth;
         let root = (across * across + self.square).sqrt() * radius;
-        self.slopes([across.zero(); 2], middle, root)
+        let terms = (middle.abs() + root) * self.per_square;
+        self.outward(self.relative_slopes(middle, root), terms)
     }
 
-    /// The slopes K + (w c_z ± root)/A, rounded outward, from K and w c_z, each with an upper bound of the
-    /// magnitudes of its terms. All slopes where the ball is not ahead, or where an overflow makes NaN.
+    /// (w c_z ± root)/A from `middle` = w c_z.
     #[inline(always)]
-    fn slopes(
-        &self,
-        [axis, axis_terms]: [N; 2],
-        [middle, middle_terms]: [N; 2],
-        root: N,
-    ) -> [N; 2] {
-        let terms = axis_terms + (middle_terms + root) * self.per_square;
+    fn relative_slopes(&self, middle: N, root: N) -> [N; 2] {
+        let (near, far) = (middle - root, middle + root);
+        [near * self.per_square, far * self.per_square]
+    }
+
+    /// Rounds a range of slopes outward, by an upper bound of the magnitudes of their terms. All slopes where the ball
+    /// is not ahead, or where an overflow makes NaN.
+    #[inline(always)]
+    fn outward(&self, [min, max]: [N; 2], terms: N) -> [N; 2] {
         let rounding = terms * (SLOPE_ROUNDINGS * UNIT_ROUNDOFF);
-        let min = axis + (middle - root) * self.per_square - rounding;
-        let max = axis + (middle + root) * self.per_square + rounding;
+        let (min, max) = (min - rounding, max + rounding);
         N::select_all(self.is_ahead & min.le(max), [min, max], unbounded(min))
     }
 }

@@ -2,11 +2,11 @@ use core::marker::PhantomData;
 
 use glam::Vec3;
 
-use super::projected::{Field, Projected, bounds_around, outward};
+use super::projected::{Field, Projected, bounds_around};
 use super::slopes::{TangentPlanes, unbounded};
 use super::{Project, margin};
 use crate::bound::{Sphere, Spheres};
-use crate::num::{Single, Vector3};
+use crate::num::{Single, UNIT_ROUNDOFF, Vector3};
 use crate::view::{Camera, Perspective, Projection, ViewBounds};
 
 /// Budget for the centre, in units of the sum of its coordinates.
@@ -18,6 +18,8 @@ const BOX_ROUNDINGS: f32 = 2.0;
 const RADIUS_DEVIATIONS: f32 = 3.0;
 /// Budget for the radius: its own sums, those of the box test, and a measured δ that is short.
 const RADIUS_ROUNDINGS: u16 = 10;
+/// Budget for both ends of the range of depths, in units of the depth of the centre and the radius.
+const DEPTH_ROUNDINGS: f32 = 8.0;
 /// Lower clamp of the radius. Its square, and the squares of distances as long, are normal numbers.
 const LEAST_RADIUS: f32 = 1e-18;
 
@@ -92,7 +94,8 @@ impl<N: Single> Spheres<N> {
     #[inline(always)]
     fn fields<P: Projection>(self, camera: &Camera<P>) -> [N; FIELDS] {
         let view = camera.view();
-        let center = view.relative_to_anchor(self.center);
+        let origin = Vector3::zero(self.radius);
+        let center = view.relative_to_anchor(self.center.unwrap_or(origin));
         let rounding = margin(camera, center, self.radius, CENTER_ROUNDINGS, BOX_ROUNDINGS)
             + view.rounding_of_anchor();
         let stretch = self.radius * (RADIUS_DEVIATIONS * view.rotation_deviation());
@@ -106,12 +109,17 @@ impl<N: Single> Spheres<N> {
             return everywhere;
         }
         let radius = enlarged.max(zero.splat(LEAST_RADIUS));
-        let bounds = bounds::<N, P>(center, radius);
+        // The bounds of an infinite radius hold everything.
+        let [x, y, z, radius] = N::select_all(
+            is_finite,
+            [center.x, center.y, center.z, radius],
+            [zero, zero, zero, high],
+        );
+        let bounds = bounds::<N, P>(Vector3::new(x, y, z), radius);
         let ([left, right], [bottom, top]) = (bounds.across, bounds.down);
-        let ([near, far], Vector3 { x, y, z }) = (bounds.depths, center);
+        let [near, far] = bounds.depths;
         let squared = radius * radius;
-        let fields = [x, y, z, squared, left, right, bottom, top, near, far];
-        N::select_all(is_finite, fields, everywhere)
+        [x, y, z, squared, left, right, bottom, top, near, far]
     }
 }
 
@@ -122,10 +130,11 @@ fn bounds<N: Single, P: Projection>(center: Vector3<N>, radius: N) -> ViewBounds
         return bounds_around(center, Vector3::new(radius, radius, radius));
     }
     let planes = TangentPlanes::new(center.z, radius);
+    let reach = radius + (center.z.abs() + radius) * (DEPTH_ROUNDINGS * UNIT_ROUNDOFF);
     ViewBounds {
         across: planes.slopes_of_sphere(center.x, radius),
         down: planes.slopes_of_sphere(center.y, radius),
-        depths: outward([center.z - radius, center.z + radius]),
+        depths: [center.z - reach, center.z + reach],
     }
 }
 

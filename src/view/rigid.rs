@@ -1,7 +1,7 @@
 use glam::{Mat3, Vec3};
 
 use crate::base::{Direction, Error, finite, orthonormal};
-use crate::num::{Double, Matrix3, Single, UNIT_ROUNDOFF, Vector3};
+use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3};
 
 /// Budget for the rounding that grows with the anchor's image, in [`RigidView::move_anchor_to_eye`].
 const ANCHOR_ROUNDINGS: f32 = 10.0;
@@ -63,7 +63,7 @@ impl RigidView {
         }
         self.rounding_of_anchor =
             ANCHOR_ROUNDINGS * UNIT_ROUNDOFF * self.anchor_image.abs().element_sum()
-                + self.rounding_of_terms([self.anchor, Vec3::ZERO].map(Vector3::from));
+                + self.rounding_of_terms(Vector3::from(self.anchor));
     }
 
     pub fn rotation(&self) -> Mat3 {
@@ -78,9 +78,7 @@ impl RigidView {
     /// Transforms a `point` from world space to camera space. Computed in `f64` and rounded once.
     #[inline]
     pub fn transform_point(&self, point: Vec3) -> Vec3 {
-        let point = Vector3::from(point).widen();
-        let [x, y, z] = self.rows.map(|row| row.dot(point));
-        Vector3::narrow(Vector3::new(x, y, z) + self.translation_f64).into()
+        self.transform_points(Vector3::from(point)).into()
     }
 
     /// Transforms a `point` from camera space to world space, to within rounding.
@@ -95,12 +93,16 @@ impl RigidView {
         Vector3::narrow(Vector3::new(x, y, z)).into()
     }
 
-    /// Transforms the exact sum of `parts` from world space to camera space, and rounds once.
+    /// [`transform_point`](Self::transform_point) in lanes.
     #[inline(always)]
-    pub fn sum_to_camera_space<N: Single>(&self, parts: [Vector3<N>; 2]) -> Vector3<N> {
-        let parts = [parts[0].widen(), parts[1].widen()];
-        let [x, y, z] = self.rows;
-        let rotated = Vector3::new(dot_sum(x, parts), dot_sum(y, parts), dot_sum(z, parts));
+    pub fn transform_points<N: Single>(&self, points: Vector3<N>) -> Vector3<N> {
+        let (points, [x, y, z]) = (points.widen(), self.rows);
+        let like = points.x;
+        // No closure, which is a call through memory if N is a vector.
+        let x = Vector3::splat(like, x).dot(points);
+        let y = Vector3::splat(like, y).dot(points);
+        let z = Vector3::splat(like, z).dot(points);
+        let rotated = Vector3::new(x, y, z);
         Vector3::narrow(rotated + Vector3::splat(rotated.x, self.translation_f64))
     }
 
@@ -127,12 +129,12 @@ impl RigidView {
         self.rounding_of_anchor
     }
 
-    /// Upper bound, in length, of the error of the sums in `f64` of
-    /// [`sum_to_camera_space`](Self::sum_to_camera_space) for these `parts`, before the result is rounded.
+    /// Upper bound, in length, of the error of the sums in `f64` of [`transform_points`](Self::transform_points),
+    /// before the result is rounded.
     #[inline(always)]
-    pub fn rounding_of_terms<N: Single>(&self, parts: [Vector3<N>; 2]) -> N {
-        let translation = Vector3::splat(parts[0].x, self.translation.abs().into());
-        let terms = parts[0].abs() + parts[1].abs() + translation;
+    pub fn rounding_of_terms<N: Single>(&self, points: Vector3<N>) -> N {
+        let translation = Vector3::splat(points.x, self.translation.abs().into());
+        let terms = points.abs() + translation;
         terms.element_sum() * (TERM_ROUNDINGS * f64::EPSILON as f32)
     }
 
@@ -146,13 +148,6 @@ impl RigidView {
     pub fn rotation_deviation(&self) -> f32 {
         self.rotation_deviation
     }
-}
-
-/// The sum of the dot products of `row` with both parts.
-#[inline(always)]
-fn dot_sum<D: Double>(row: Vector3<f64>, parts: [Vector3<D>; 2]) -> D {
-    let row = Vector3::splat(parts[0].x, row);
-    row.dot(parts[0]) + row.dot(parts[1])
 }
 
 /// The rotation and translation of a camera at `eye` that looks at `target`, with `up` upright.
