@@ -69,7 +69,7 @@ pub struct LightBatch<P: Projected> {
     records: Vec<Record>,
     /// The bounds of each shape once more, an array for each end: the order of [`ViewBounds`]. Most lights are
     /// rejected by these alone, so that their records are never read.
-    bounds: [Vec<f32>; ENDS],
+    pub(super) bounds: [Vec<f32>; ENDS],
     /// The index of each light.
     lights: Vec<u32>,
     shape: PhantomData<P>,

@@ -39,6 +39,8 @@
 //! - The exact test has its own promise: see [`touches_exactly`](crate::TileTest::touches_exactly).
 
 mod batch;
+#[cfg(test)]
+mod batch_tests;
 mod bins;
 mod block;
 mod builder;
