@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::cap_union::{CapMean, CapReach, CapSum};
-use super::ltc_majorant::LtcMembers;
+use super::ltc_majorant::{LtcMembers, rounding_of_image};
 use super::{Cap, Caps, LobeFamily, LtcLobe, Majorant, ReceiverLobe};
 use crate::base::Direction;
 use crate::num::{Single, Vector3, round_down, round_up, sqrt_f64};
@@ -93,18 +93,20 @@ impl ReceiverLobe for LtcLobe {
         let exact = self.lanes().rows();
         let rows = exact.map(|row| Vec3::from(Vector3::<f32>::narrow(row)));
         let squares = exact.map(Vector3::length_squared);
-        let [_, determinant, third] = squares;
+        let [first, determinant, third] = squares;
         let sum: f64 = squares.iter().sum();
+        let rounding = rounding_of_image(first, third);
+        let least_image = (2.0 * determinant / sum - rounding).max(0.0);
         let apart = exact[1] - Vector3::<f32>::from(rows[1]).widen();
         let round = |length: f64| round_up(length as f32, LENGTH_ROUNDINGS);
         LtcFamily {
             normals: Cap::of_axis(self.normal()),
             amplitude: self.amplitude(),
             rows,
-            // The second row alone is rounded.
-            deviations: [0.0, round(apart.length())],
+            // The second row alone is rounded, here and in the value.
+            deviations: [0.0, round(apart.length() + rounding)],
             norms: [round(sqrt_f64(third)), round(sqrt_f64(sum))],
-            least_image: round_down((2.0 * determinant / sum) as f32, LENGTH_ROUNDINGS),
+            least_image: round_down(least_image as f32, LENGTH_ROUNDINGS),
         }
     }
 }

@@ -2,10 +2,21 @@
 
 use super::ltc_lobes::LtcLobes;
 use super::{Caps, Majorant};
-use crate::num::{Real, Single, Vector3};
+use crate::num::{Double, Real, Single, UNIT_ROUNDOFF, Vector3};
 
 /// Budget for the value, and for the rounding of a maximum within a cap to single precision.
 const MAXIMUM_ROUNDINGS: u16 = 32;
+/// Budget for the second row in the value, the cross product of the others in single precision, in units of u and the
+/// product of their lengths.
+const CROSS_ROUNDINGS: f64 = 4.0;
+/// Keeps the image of a direction away from zero.
+const LEAST_IMAGE: f64 = 1e-60;
+
+/// How far the image of a direction may be off in the value, for the squared lengths of the first and the third row.
+#[inline(always)]
+pub(super) fn rounding_of_image<D: Double>(first: D, third: D) -> D {
+    (first * third).sqrt() * (CROSS_ROUNDINGS * f64::from(UNIT_ROUNDOFF))
+}
 
 impl<N: Single> LtcLobes<N> {
     /// The rows of M⁻¹, where the first and the third are as they are stored.
@@ -22,14 +33,15 @@ impl<N: Single> LtcLobes<N> {
         let squares = rows.map(Vector3::length_squared);
         let [x, determinant, z] = squares;
         let sum = x + determinant + z;
+        let rounding = rounding_of_image(x, z);
         let zero = sum.zero();
         let members = LtcMembers {
             normals: Caps::around(self.normal),
             amplitude: self.amplitude,
             rows,
-            deviations: [zero; 2],
+            deviations: [zero, rounding],
             norms: [z.sqrt(), sum.sqrt()],
-            least_image: determinant * 2.0 / sum,
+            least_image: determinant * 2.0 / sum - rounding,
         };
         members.majorant(cap)
     }
@@ -43,11 +55,11 @@ pub(super) struct LtcMembers<N: Single> {
     pub amplitude: N,
     /// The rows of the mean of the matrices.
     pub rows: [Vector3<N::Double>; 3],
-    /// How far the third row and the matrix may be from that.
+    /// How far the third row may be from that, and the matrix, or what the value takes for it.
     pub deviations: [N::Double; 2],
     /// The greatest length of the third row, and the greatest norm of the matrix.
     pub norms: [N::Double; 2],
-    /// The least ‖M⁻¹ω‖ of all directions.
+    /// The least ‖M⁻¹ω‖ of all directions, or what the value takes for it.
     pub least_image: N::Double,
 }
 
@@ -76,6 +88,7 @@ impl<N: Single> LtcMembers<N> {
         let height = z + self.norms[0] * chord + self.deviations[0];
         let spread = self.norms[1] * chord + self.deviations[1];
         let length = (image - spread).max(self.least_image);
+        let length = length.max(length.splat(LEAST_IMAGE));
         let amplitude = self.amplitude.widen();
         let one = amplitude.splat(1.0);
         // z is no longer than the whole.

@@ -1,9 +1,9 @@
 //! The smallest cases of NaN and of lights lost that arbitrary bits have found.
 
 use stochastic_light_culling::{
-    BatchBuilder, Bounded, Camera, Conductor, Culler, DepthInterval, Direction, Ellipsoid, Ggx,
-    GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, Lobe, NoFresnel, Paper, Roulette,
-    Sphere, Spheroid, Tight, TileDepths, TileRectangle,
+    BatchBuilder, Bounded, Camera, Cap, Conductor, Culler, DepthInterval, Direction, Ellipsoid,
+    Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, Lobe, LtcLobe, NoFresnel, Paper,
+    Roulette, Sphere, Spheroid, Tight, TileDepths, TileRectangle,
     glam::{Mat3, Mat4, Vec2, Vec3},
 };
 
@@ -206,4 +206,20 @@ fn blocks_of_tiles_without_width_are_culled() {
         .cull(&batch, &tiles, &mut lists)
         .expect("few enough");
     assert_eq!(lists.lights(), [3; 60]);
+}
+
+/// The second row of the value is a cross product in single precision, of which little is left.
+#[test]
+fn rows_of_a_transformed_cosine_are_nearly_parallel() {
+    let normal = Direction::new(Vec3::new(5e-6, 1.0, 0.0)).unwrap();
+    for i in 0..200 {
+        let turn = 0.03 * i as f32;
+        let incoming = Direction::new(Vec3::new(turn.cos(), 0.4, turn.sin())).unwrap();
+        let incidence = Incidence { normal, incoming };
+        let inverse = [0.039, 0.0, 0.0963, 2.79e-5];
+        let lobe = LtcLobe::with_matrix(inverse, 1.0, incidence).unwrap();
+        let most = lobe.maximum_within(&Cap::new(Direction::Y, 0.0).unwrap());
+        let value = lobe.value(Vec3::Y);
+        assert!(value * 0.999 <= most, "{value} above {most}");
+    }
 }
