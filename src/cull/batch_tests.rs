@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use glam::Vec3;
 
 use super::{BatchBuilder, LightBatch};
+use crate::base::Direction;
 use crate::bound::{Bounded, Shape};
 use crate::light::{Roulette, Seed, Vpl, Xi};
 use crate::lobe::{ConstantLobe, SpotLobe};
@@ -61,7 +62,7 @@ fn test<L: Bounded<Shape: Project> + Clone>(count: usize, dark: usize, lobe: &L)
 
 #[test]
 fn bounds_are_those_of_the_records() {
-    let spot = SpotLobe::new(0.3, 0.5, crate::Direction::X).unwrap();
+    let spot = SpotLobe::new(0.3, 0.5, Direction::X).unwrap();
     for count in [1, 15, 16, 31, 33, 64, 100, 200] {
         for dark in [1, 2, 7, 1000] {
             test(count, dark, &ConstantLobe);
