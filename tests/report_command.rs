@@ -52,17 +52,7 @@ fn quick_run(test: &str, more: &[&str]) -> HashMap<String, Columns> {
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{error}");
 
-    let mut names: Vec<String> = fs::read_dir(&out)
-        .expect("the folder was made")
-        .map(|entry| {
-            entry
-                .expect("readable")
-                .file_name()
-                .to_string_lossy()
-                .into()
-        })
-        .collect();
-    names.sort_unstable();
+    let names = command::names_in(&out);
     assert!(names.contains(&"report.md".into()), "{names:?}");
     let page = fs::read_to_string(out.join("report.md")).expect("the page is text");
     names

@@ -1,7 +1,7 @@
 use glam::{Mat3, Vec3};
 
 use super::ltc_from_ggx::{GgxSurfaces, IncidencePlane, Matrix};
-use super::ltc_lobes::LtcLobes;
+use super::ltc_lobes::{LTC_NUMBERS, LtcLobes};
 use super::{Cap, Caps, Fresnel, Ggx, Incidence, Lobe, LobeNumbers, Majorant, padded};
 use crate::base::{Direction, Error, number_in};
 use crate::num::{Single, Vector3};
@@ -96,31 +96,18 @@ impl LtcLobe {
     /// height-correlated masking and shadowing.
     pub fn new<F: Fresnel>(ggx: Ggx, fresnel: F, incidence: Incidence) -> Self {
         let (lobe, reflected) = GgxSurfaces::new(ggx, fresnel, incidence).lobes();
-        Self::of_numbers(incidence.normal, lobe.made_numbers(reflected))
+        Self::from_lanes(incidence.normal, &lobe, reflected)
     }
 
-    /// The lobe with this normal, and numbers as in [`LtcLobes::made_numbers`].
+    /// The lobe of a single lane, with this normal and ρ = `reflected`.
     #[inline(always)]
-    pub(crate) fn of_numbers(
-        normal: Direction,
-        [
-            reflected,
-            amplitude,
-            x_x,
-            x_y,
-            x_z,
-            z_x,
-            z_y,
-            z_z,
-            image_error,
-        ]: [f32; 9],
-    ) -> Self {
+    pub(crate) fn from_lanes(normal: Direction, lane: &LtcLobes<f32>, reflected: f32) -> Self {
         Self {
             normal,
             reflected,
-            amplitude,
-            rows: [Vec3::new(x_x, x_y, x_z), Vec3::new(z_x, z_y, z_z)],
-            image_error,
+            amplitude: lane.amplitude,
+            rows: [lane.first.into(), lane.third.into()],
+            image_error: lane.image_error,
         }
     }
 
@@ -167,14 +154,13 @@ impl LtcLobe {
         let plane = IncidencePlane::of(normal, incidence.incoming.into());
         if plane.cosine <= 0.0 {
             let lobe = LtcLobes::empty(normal);
-            return Ok(Self::of_numbers(incidence.normal, lobe.made_numbers(0.0)));
+            return Ok(Self::from_lanes(incidence.normal, &lobe, 0.0));
         }
         let magnitude = f64::from(magnitude);
         let reflected = 0.5 * magnitude * matrix.twice_share_above([0.0, 1.0]);
         let frame = [plane.across.cross(plane.normal), plane.normal];
         let lobe = matrix.lobes(normal, frame, magnitude);
-        let numbers = lobe.made_numbers(reflected as f32);
-        Ok(Self::of_numbers(incidence.normal, numbers))
+        Ok(Self::from_lanes(incidence.normal, &lobe, reflected as f32))
     }
 
     /// The surface normal n.
@@ -241,15 +227,11 @@ impl Lobe for LtcLobe {
 
     #[inline]
     fn numbers(&self) -> LobeNumbers<f32> {
-        let (n, [x, z]) = (self.normal, self.rows);
-        let (amplitude, error) = (self.amplitude, self.image_error);
-        padded([
-            n.x, n.y, n.z, amplitude, x.x, x.y, x.z, z.x, z.y, z.z, error,
-        ])
+        padded(self.lanes().numbers())
     }
 
     fn numbers_in_use() -> usize {
-        11
+        LTC_NUMBERS
     }
 
     fn has_more_than_numbers() -> bool {

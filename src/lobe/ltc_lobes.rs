@@ -18,6 +18,9 @@ const LEAST: f32 = 8.673_617_4e-19;
 /// Is far above what ΦA loses to underflow, and far below all that counts: 2⁻¹²⁰.
 const LEAST_FACTOR: f32 = 7.523_164e-37;
 
+/// How many numbers a lobe has.
+pub(crate) const LTC_NUMBERS: usize = 11;
+
 /// An [`LtcLobe`](super::LtcLobe) in each lane.
 #[derive(Clone, Copy)]
 pub(crate) struct LtcLobes<N> {
@@ -57,20 +60,13 @@ impl<N: Single> LtcLobes<N> {
         }
     }
 
-    /// ρ = `reflected`, and the numbers beside the normal.
+    /// The inverse of [`from_numbers`](Self::from_numbers).
     #[inline(always)]
-    pub fn made_numbers(&self, reflected: N) -> [N; 9] {
-        let (x, z) = (self.first, self.third);
+    pub fn numbers(&self) -> [N; LTC_NUMBERS] {
+        let (n, x, z) = (self.normal, self.first, self.third);
+        let (amplitude, error) = (self.amplitude, self.image_error);
         [
-            reflected,
-            self.amplitude,
-            x.x,
-            x.y,
-            x.z,
-            z.x,
-            z.y,
-            z.z,
-            self.image_error,
+            n.x, n.y, n.z, amplitude, x.x, x.y, x.z, z.x, z.y, z.z, error,
         ]
     }
 

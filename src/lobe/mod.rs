@@ -76,6 +76,8 @@ pub use ltc_family::LtcFamily;
 pub(crate) use ltc_from_ggx::GgxSurfaces;
 #[cfg(feature = "ltc")]
 pub use ltc_lobe::LtcLobe;
+#[cfg(all(feature = "cull", feature = "ltc"))]
+pub(crate) use ltc_lobes::{LTC_NUMBERS, LtcLobes};
 pub use masking::{HeightCorrelated, MaskingShadowing, Separable};
 pub use phong::PhongLobe;
 pub use phong_family::PhongFamily;

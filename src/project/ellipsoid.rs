@@ -42,7 +42,7 @@ use core::marker::PhantomData;
 use glam::{Mat3, Vec3};
 
 use super::projected::{Field, Projected, bounds_around, outward};
-use super::slopes::{TangentPlanes, unbounded};
+use super::slopes::TangentPlanes;
 use super::{Project, margin};
 use crate::bound::{Ellipsoid, Ellipsoids};
 use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3};
@@ -197,15 +197,6 @@ impl<N: Single> Ellipsoids<N> {
         let center = view.transform_points(light) + offset;
         let is_finite = semi_axes.is_finite() & center.is_finite();
         let zero = shortest.zero();
-        let [low, high] = unbounded(zero);
-        let everywhere = [
-            zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, low, high, low, high, low,
-            high,
-        ];
-        if N::is_known_false(is_finite) {
-            return everywhere;
-        }
-
         let axes = rotation * self.axes;
         let [xx, xy, xz, yx, yy, yz, m] = triangular_stretch(axes, semi_axes);
         let rounding = margin(camera, center, longest, CENTER_ROUNDINGS, BOX_ROUNDINGS)

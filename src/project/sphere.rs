@@ -3,7 +3,7 @@ use core::marker::PhantomData;
 use glam::Vec3;
 
 use super::projected::{Field, Projected, bounds_around};
-use super::slopes::{TangentPlanes, unbounded};
+use super::slopes::TangentPlanes;
 use super::{Project, margin};
 use crate::bound::{Sphere, Spheres};
 use crate::num::{Single, UNIT_ROUNDOFF, Vector3};
@@ -103,17 +103,12 @@ impl<N: Single> Spheres<N> {
         // If the centre is not finite, the margin is not either.
         let is_finite = (enlarged * enlarged).is_finite();
         let zero = enlarged.zero();
-        let [low, high] = unbounded(zero);
-        let everywhere = [zero, zero, zero, high, low, high, low, high, low, high];
-        if N::is_known_false(is_finite) {
-            return everywhere;
-        }
         let radius = enlarged.max(zero.splat(LEAST_RADIUS));
         // The bounds of an infinite radius hold everything.
         let [x, y, z, radius] = N::select_all(
             is_finite,
             [center.x, center.y, center.z, radius],
-            [zero, zero, zero, high],
+            [zero, zero, zero, zero.splat(f32::INFINITY)],
         );
         let bounds = bounds::<N, P>(Vector3::new(x, y, z), radius);
         let ([left, right], [bottom, top]) = (bounds.across, bounds.down);

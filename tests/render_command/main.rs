@@ -5,7 +5,6 @@ mod refusals;
 mod runs;
 
 use std::ffi::OsStr;
-use std::fs;
 use std::path::PathBuf;
 use std::process::Output;
 
@@ -43,17 +42,7 @@ fn small_run(test: &str, more: &[&str]) -> (Value, Vec<String>) {
     let output = render(arguments.chain(more.iter().map(OsStr::new)));
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{error}");
-    let pictures = fs::read_dir(&out).expect("the folder was made");
-    let mut pictures: Vec<String> = pictures
-        .map(|entry| {
-            entry
-                .expect("readable")
-                .file_name()
-                .to_string_lossy()
-                .into()
-        })
-        .collect();
-    pictures.sort_unstable();
+    let pictures = command::names_in(&out);
     for picture in &pictures {
         image::open(out.join(picture)).unwrap_or_else(|error| panic!("{picture}: {error}"));
     }

@@ -5,7 +5,9 @@ use fearless_simd::{Level, Simd, dispatch};
 use crate::base::Direction;
 use crate::cull::culler::widest;
 use crate::cull::lanes::{LANES, Lanes, load, parts, store};
-use crate::lobe::{Fresnel, Ggx, GgxSurfaces, Incidence, LtcLobe};
+use crate::lobe::{
+    Fresnel, Ggx, GgxSurfaces, Incidence, LTC_NUMBERS, LobeNumbers, LtcLobe, LtcLobes,
+};
 use crate::num::F32Lanes;
 
 impl LtcLobe {
@@ -39,15 +41,14 @@ impl LtcLobe {
             surfaces: surfaces.into_iter(),
             level: widest(),
             normals: [Direction::Z; LANES],
-            made: [[0.0; LANES]; MADE],
+            made: [[0.0; LANES]; LTC_NUMBERS],
+            reflected: [0.0; LANES],
             next: 0,
             len: 0,
         }
     }
 }
 
-/// Numbers of a lobe beside its normal: ρ, the amplitude, two rows of M⁻¹ and the error of an image.
-const MADE: usize = 9;
 /// Numbers of a surface: n, ω_i, α and F at normal and at grazing incidence.
 const TAKEN: usize = 9;
 
@@ -56,7 +57,9 @@ struct Many<I> {
     surfaces: I,
     level: Level,
     normals: [Direction; LANES],
-    made: [Lanes; MADE],
+    /// The numbers of the lobes, and ρ.
+    made: [Lanes; LTC_NUMBERS],
+    reflected: Lanes,
     /// The lane of the next lobe.
     next: usize,
     len: usize,
@@ -74,8 +77,8 @@ impl<F: Fresnel, I: Iterator<Item = (Ggx, F, Incidence)>> Many<I> {
             self.normals[self.len] = incidence.normal;
             self.len += 1;
         }
-        let (level, made) = (self.level, &mut self.made);
-        dispatch!(level, simd => make_in_lanes(simd, &taken, made));
+        let (level, made, reflected) = (self.level, &mut self.made, &mut self.reflected);
+        dispatch!(level, simd => make_in_lanes(simd, &taken, made, reflected));
     }
 }
 
@@ -92,25 +95,33 @@ impl<F: Fresnel, I: Iterator<Item = (Ggx, F, Incidence)>> Iterator for Many<I> {
         }
         let lane = self.next;
         self.next += 1;
-        let mut numbers = [0.0; MADE];
+        let mut numbers: LobeNumbers<f32> = [0.0; _];
         for (number, lanes) in numbers.iter_mut().zip(&self.made) {
             *number = lanes[lane];
         }
-        Some(LtcLobe::of_numbers(self.normals[lane], numbers))
+        let made = LtcLobes::from_numbers(&numbers);
+        let (normal, reflected) = (self.normals[lane], self.reflected[lane]);
+        Some(LtcLobe::from_lanes(normal, &made, reflected))
     }
 }
 
 /// Makes the lobes of the surfaces that are `taken`.
 #[inline(always)]
-fn make_in_lanes<S: Simd>(simd: S, taken: &[Lanes; TAKEN], made: &mut [Lanes; MADE]) {
+fn make_in_lanes<S: Simd>(
+    simd: S,
+    taken: &[Lanes; TAKEN],
+    made: &mut [Lanes; LTC_NUMBERS],
+    reflected: &mut Lanes,
+) {
     for part in 0..parts::<S>() {
         let mut numbers = [F32Lanes::new(simd, 0.0); TAKEN];
         for (vector, lanes) in numbers.iter_mut().zip(taken) {
             *vector = load(simd, lanes, part);
         }
-        let (lobes, reflected) = GgxSurfaces::of_numbers(numbers).lobes();
-        for (lanes, vector) in made.iter_mut().zip(lobes.made_numbers(reflected)) {
+        let (lobes, of_lobes) = GgxSurfaces::of_numbers(numbers).lobes();
+        for (lanes, vector) in made.iter_mut().zip(lobes.numbers()) {
             store(lanes, part, vector);
         }
+        store(reflected, part, of_lobes);
     }
 }

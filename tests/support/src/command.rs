@@ -2,7 +2,7 @@
 
 use std::ffi::OsStr;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 /// Runs the example that `cargo test` has built beside this test's own executable. With `--test`
@@ -53,6 +53,17 @@ pub fn fresh_folder(example: &str, test: &str) -> PathBuf {
     let folder = fresh_path(example, test);
     fs::create_dir_all(&folder).expect("a folder can be made");
     folder
+}
+
+/// The names of what is in `folder`, in their order.
+pub fn names_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("the folder was made");
+    let name = |entry: std::io::Result<fs::DirEntry>| entry.expect("readable").file_name();
+    let mut names: Vec<String> = entries
+        .map(|entry| name(entry).to_string_lossy().into())
+        .collect();
+    names.sort_unstable();
+    names
 }
 
 /// Asserts that `output` refuses with status 2 and one line that contains `reason`.
