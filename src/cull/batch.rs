@@ -5,12 +5,15 @@ use core::marker::PhantomData;
 use fearless_simd::{Simd, SimdBase, SimdMask, dispatch};
 
 use super::culler::widest;
-use super::lanes::{LANES, Record, compress, load_records, store_records, write_chosen};
+use super::lanes::{LANES, compress, write_chosen};
+use super::records::{
+    Line, fields_of_record, lines_for, load_records, record, record_mut, store_records,
+};
 use crate::num::{F32Lanes, Twice};
 use crate::project::Projected;
 use crate::view::ViewBounds;
 
-/// Projected lights, as a [`Culler`](super::Culler) takes them: 92 bytes each.
+/// Projected lights, as a [`Culler`](super::Culler) takes them: 92 bytes each, or 60 for spheres.
 ///
 /// A [`BatchBuilder`](super::BatchBuilder) adds many lights at a time, from lights or kept bounds;
 /// [`push`](Self::push) adds one that is projected already. Keeps its memory when cleared.
@@ -65,8 +68,8 @@ use crate::view::ViewBounds;
 #[derive(Clone, Debug)]
 pub struct LightBatch<P: Projected> {
     len: usize,
-    /// The shape of each light. Longer than `len`, so that lights can be written before they are counted.
-    records: Vec<Record>,
+    /// The records of the lights. Longer than `len` takes, so that lights can be written before they are counted.
+    lines: Vec<Line>,
     /// The bounds of each shape once more, an array for each end: the order of [`ViewBounds`]. Most lights are
     /// rejected by these alone, so that their records are never read.
     pub(super) bounds: [Vec<f32>; ENDS],
@@ -84,7 +87,7 @@ impl<P: Projected> LightBatch<P> {
     pub const fn new() -> Self {
         Self {
             len: 0,
-            records: Vec::new(),
+            lines: Vec::new(),
             bounds: [const { Vec::new() }; ENDS],
             lights: Vec::new(),
             shape: PhantomData,
@@ -118,10 +121,8 @@ impl<P: Projected> LightBatch<P> {
 
     /// Iterates over the indices and shapes of the lights, in the order in which they were added.
     pub fn iter(&self) -> impl Iterator<Item = (u32, P)> {
-        let shapes = self
-            .records()
-            .iter()
-            .map(|r| P::from_fields(r.fields::<P>()));
+        let records = (0..self.len).map_while(|place| self.record(place));
+        let shapes = records.map(|record| P::from_fields(fields_of_record::<P>(record)));
         self.lights().iter().copied().zip(shapes)
     }
 
@@ -161,11 +162,11 @@ impl<P: Projected> LightBatch<P> {
             }
         }
         // Last, since it branches: what is computed for it is found by then.
-        let records = &mut self.records[start..end];
-        let fields = fields.as_ref().iter();
-        store_records(simd, fields.clone().map(|field| field.0), first, records);
-        let records = &mut records[count..];
-        store_records(simd, fields.map(|field| field.1), second, records);
+        let (lines, fields) = (&mut self.lines, fields.as_ref().iter());
+        let of_first = fields.clone().map(|field| field.0);
+        store_records::<S, P>(simd, of_first, first, lines, start);
+        let of_second = fields.map(|field| field.1);
+        store_records::<S, P>(simd, of_second, second, lines, start + count);
     }
 
     #[inline(always)]
@@ -173,7 +174,8 @@ impl<P: Projected> LightBatch<P> {
         let mut end = self.len;
         for (light, shape) in lights {
             self.make_room(end + 1);
-            self.records[end] = Record::new::<P>(&shape.borrow().to_fields());
+            let fields = shape.borrow().to_fields();
+            record_mut::<P>(&mut self.lines, end).copy_from_slice(&fields.as_ref()[..P::STORED]);
             self.lights[end] = light;
             end += 1;
             // While the records are in the cache.
@@ -194,8 +196,9 @@ impl<P: Projected> LightBatch<P> {
     #[inline(always)]
     fn copy_bounds<S: Simd>(&mut self, simd: S, end: usize) {
         for first in (self.len..end).step_by(S::f32s::LEN) {
-            let records = &self.records[first..][..S::f32s::LEN];
-            let fields = load_records::<S, P>(simd, |lane| &records[lane]);
+            let fields = load_records::<S, P>(simd, |lane| {
+                self.record(first + lane).expect("there is room")
+            });
             for (ends, end) in self.bounds.iter_mut().zip(ends(P::bounds_of(&fields))) {
                 end.0.store_slice(&mut ends[first..][..S::f32s::LEN]);
             }
@@ -219,12 +222,13 @@ impl<P: Projected> LightBatch<P> {
     #[cfg(all(test, feature = "rayon"))]
     pub(super) fn bytes(&self) -> usize {
         let bounds = self.bounds.iter().map(|ends| size_of_val(&ends[..]));
-        size_of_val(&self.records[..]) + bounds.sum::<usize>() + size_of_val(&self.lights[..])
+        size_of_val(&self.lines[..]) + bounds.sum::<usize>() + size_of_val(&self.lights[..])
     }
 
-    /// The shape of each light.
-    pub(super) fn records(&self) -> &[Record] {
-        &self.records[..self.len]
+    /// The record of the light at `place`. `None` for a place far past the last light; arbitrary near it.
+    #[inline(always)]
+    pub(super) fn record(&self, place: usize) -> Option<&[f32]> {
+        record::<P>(&self.lines, place)
     }
 
     /// The index of each light.
@@ -236,7 +240,7 @@ impl<P: Projected> LightBatch<P> {
     #[inline(always)]
     pub(super) fn make_room(&mut self, count: usize) {
         let room = count + LANES;
-        if self.records.len() < room {
+        if self.lights.len() < room {
             self.grow(room);
         }
     }
@@ -245,11 +249,12 @@ impl<P: Projected> LightBatch<P> {
     #[cold]
     #[inline(never)]
     fn grow(&mut self, room: usize) {
-        grow(&mut self.records, room, Record([0.0; LANES]));
-        for ends in &mut self.bounds {
-            grow(ends, room, 0.0);
-        }
         grow(&mut self.lights, room, 0);
+        let room = self.lights.len();
+        self.lines.resize(lines_for::<P>(room), Line::ZERO);
+        for ends in &mut self.bounds {
+            ends.resize(room, 0.0);
+        }
     }
 }
 

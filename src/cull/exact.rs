@@ -9,10 +9,9 @@ use fearless_simd::{Simd, SimdBase, SimdMask};
 
 use super::batch::grow;
 use super::block::{Numbers, Output, Scene};
-use super::lanes::{
-    LANES, Record, load_lines, load_records, mask_of_first, numbers_from, write_chosen,
-};
+use super::lanes::{LANES, mask_of_first, numbers_from, write_chosen};
 use super::lists::Window;
+use super::records::{Line, load_lines, load_records};
 use super::tile_depths::Area;
 use super::{LightLists, TileDepths};
 use crate::num::{F32Lanes, Single};
@@ -25,7 +24,7 @@ pub(super) struct ExactLists {
     /// For each depth interval, the places of the lights that pass the box test.
     pairs: LightLists,
     /// The bounds of each depth interval whose list is not empty.
-    intervals: Vec<Record>,
+    intervals: Vec<Line>,
     /// For each pair, the index of its interval in `intervals`.
     owners: Vec<u32>,
     /// For each pair, whether the light touches the interval.
@@ -103,7 +102,7 @@ impl ExactLists {
                         let mut bounds = [0.0; LANES];
                         let ([left, right], [bottom, top]) = (tiles.across(x), tiles.down(y));
                         bounds[..6].copy_from_slice(&[left, right, bottom, top, *near, *far]);
-                        self.intervals.push(Record(bounds));
+                        self.intervals.push(Line(bounds));
                     }
                 }
             }
@@ -150,11 +149,11 @@ impl ExactLists {
         scene: &Scene<P>,
         pair: impl Fn(usize) -> usize,
     ) -> Frustum<<F32Lanes<S> as Single>::Double, P::Projection> {
-        let (places, records) = (self.pairs.lights(), scene.batch.records());
+        let (places, batch) = (self.pairs.lights(), scene.batch);
         let shapes = load_records::<S, P>(
             simd,
             #[inline(always)]
-            |lane| &records[places[pair(lane)] as usize],
+            |lane| (batch.record(places[pair(lane)] as usize)).expect("a light of the batch"),
         );
         let bounds = load_lines(
             simd,

@@ -19,8 +19,9 @@
 //!
 //! # Layout
 //!
-//! A batch holds a *record* of each light, a cache line with all fields of its shape, and the bounds of the shapes
-//! once more, an array for each of the six ends. Most lights are rejected by their bounds, which are read in order.
+//! A batch holds a *record* of each light, and the bounds of the shapes once more, an array for each of the six ends.
+//! A record is a cache line with all fields of an ellipsoid, or half of one with those of a sphere from which its
+//! other fields follow (`records`). Most lights are rejected by their bounds, which are read in order.
 //! The records of the others are gathered: as many as a vector has lanes are transposed to a vector for each field.
 //! So lights may be in any order.
 //!
@@ -52,6 +53,7 @@ mod lists;
 #[cfg(feature = "rayon")]
 mod parallel;
 mod receivers;
+mod records;
 mod select;
 mod shading;
 mod tile_depths;

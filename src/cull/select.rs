@@ -9,9 +9,9 @@ use fearless_simd::{Simd, SimdBase, SimdMask};
 use super::LightBatch;
 use super::batch::grow;
 use super::lanes::{
-    LANES, Lanes, Record, load_indices, load_records, mask_of_first, numbers_from,
-    parts as vectors, splat, write_chosen,
+    LANES, Lanes, load_indices, mask_of_first, numbers_from, parts as vectors, splat, write_chosen,
 };
+use super::records::load_records;
 use super::tile_depths::NONE;
 use crate::num::F32Lanes;
 use crate::project::Projected;
@@ -49,22 +49,22 @@ impl Places {
         load_indices(simd, &self.0, part)
     }
 
-    /// The fields of the lights of the `part`-th vector. Where there is no light, the fields are `nowhere`.
+    /// The fields of the lights of the `part`-th vector. Where there is no light, those of `nowhere`.
     #[inline(always)]
     pub fn load_fields<S: Simd, P: Projected>(
         &self,
         simd: S,
         batch: &LightBatch<P>,
-        nowhere: &Record,
+        nowhere: &P::Fields<f32>,
         part: usize,
     ) -> P::Fields<F32Lanes<S>> {
-        let records = batch.records();
+        let nowhere = &nowhere.as_ref()[..P::STORED];
         load_records::<S, P>(
             simd,
             #[inline(always)]
             |lane| {
                 let place = self.0[part * S::f32s::LEN + lane];
-                records.get(place as usize).unwrap_or(nowhere)
+                batch.record(place as usize).unwrap_or(nowhere)
             },
         )
     }
@@ -209,11 +209,10 @@ impl Selection {
         touching: impl Fn(&P::Fields<F32Lanes<S>>, S::mask32s, usize) -> S::mask32s,
     ) {
         let mut writer = self.begin(places.len(), parts);
-        let nowhere = Record::new::<P>(&P::NOWHERE);
         let all = S::mask32s::splat(simd, true);
         for chunk in Places::chunks(places) {
             for part in 0..vectors::<S>() {
-                let fields = chunk.load_fields(simd, batch, &nowhere, part);
+                let fields = chunk.load_fields(simd, batch, &P::NOWHERE, part);
                 let (places, bounds) = (chunk.load(simd, part), P::bounds_of(&fields));
                 writer.write(
                     simd,

@@ -7,7 +7,7 @@ use fearless_simd::{Simd, SimdBase, SimdMask};
 use super::batch::grow;
 use super::block::{Numbers, Output, Scene};
 use super::lanes::{
-    LANES, Lanes, Record, load, load_indices, parts, splat, splat_bounds, store, write_chosen,
+    LANES, Lanes, load, load_indices, parts, splat, splat_bounds, store, write_chosen,
 };
 use super::select::Places;
 use super::tile_depths::{Area, is_none};
@@ -103,10 +103,9 @@ impl<P: BoxTest> TileLists<P> {
             places.len().div_ceil(LANES),
             Chunk::zero(),
         );
-        let nowhere = Record::new::<P>(&P::NOWHERE);
         for (chunk, places) in self.chunks.iter_mut().zip(Places::chunks(places)) {
             for part in 0..parts::<S>() {
-                let fields = places.load_fields(simd, scene.batch, &nowhere, part);
+                let fields = places.load_fields(simd, scene.batch, &P::NOWHERE, part);
                 for (lanes, vector) in chunk.fields.as_mut().iter_mut().zip(fields.as_ref()) {
                     store(lanes, part, *vector);
                 }

@@ -314,6 +314,8 @@ fn triangular_stretch<N: Real>(axes: Matrix3<N>, semi_axes: Vector3<N>) -> [N; 7
 impl<P: Projection> Projected for ProjectedEllipsoid<P> {
     type Fields<T: Field> = [T; FIELDS];
 
+    const STORED: usize = FIELDS;
+
     /// The bounds hold nothing.
     const NOWHERE: [f32; FIELDS] = {
         const FAR: f32 = f32::INFINITY;
@@ -325,6 +327,9 @@ impl<P: Projection> Projected for ProjectedEllipsoid<P> {
     fn fields_of<T: Field>(value: T) -> [T; FIELDS] {
         [value; FIELDS]
     }
+
+    #[inline(always)]
+    fn complete<N: Single>(_: &mut [N; FIELDS]) {}
 
     #[inline(always)]
     fn to_fields(&self) -> [f32; FIELDS] {

@@ -14,6 +14,10 @@ pub trait Projected: Copy + Debug {
     #[doc(hidden)]
     type Fields<T: Field>: Field + AsRef<[T]> + AsMut<[T]>;
 
+    /// The number of fields, the first ones, from which the others follow: eight or sixteen.
+    #[doc(hidden)]
+    const STORED: usize;
+
     /// The fields of a shape that touches nothing.
     #[doc(hidden)]
     const NOWHERE: Self::Fields<f32>;
@@ -21,6 +25,10 @@ pub trait Projected: Copy + Debug {
     /// `value` in each field.
     #[doc(hidden)]
     fn fields_of<T: Field>(value: T) -> Self::Fields<T>;
+
+    /// Computes the fields that follow from the first [`STORED`](Self::STORED).
+    #[doc(hidden)]
+    fn complete<N: Single>(fields: &mut Self::Fields<N>);
 
     #[doc(hidden)]
     fn to_fields(&self) -> Self::Fields<f32>;

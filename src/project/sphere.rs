@@ -2,7 +2,7 @@ use core::marker::PhantomData;
 
 use glam::Vec3;
 
-use super::projected::{Field, Projected, bounds_around};
+use super::projected::{Field, Projected, outward};
 use super::slopes::TangentPlanes;
 use super::{Project, margin};
 use crate::bound::{Sphere, Spheres};
@@ -37,27 +37,29 @@ const LEAST_RADIUS: f32 = 1e-18;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProjectedSphere<P = Perspective> {
-    center: Vec3,
-    radius_squared: f32,
-    bounds: ViewBounds<f32>,
+    fields: [f32; FIELDS],
     projection: PhantomData<P>,
 }
 
-/// The number of fields of a projected sphere.
-const FIELDS: usize = 10;
+/// The centre, the radius, the bounds of x/z and of y/z; the bounds of z and the square of the radius, which follow.
+const FIELDS: usize = 11;
+/// The number of fields from which the others follow.
+const STORED: usize = 8;
 
 impl<P> ProjectedSphere<P> {
     /// The centre in camera space. Zero for a sphere too large to be finite.
     #[must_use]
     pub fn center(&self) -> Vec3 {
-        self.center
+        let [x, y, z, ..] = self.fields;
+        Vec3::new(x, y, z)
     }
 
     /// The square of the radius, enlarged for rounding. Infinite for a sphere too large to be finite, which
     /// touches every tile.
     #[must_use]
     pub fn radius_squared(&self) -> f32 {
-        self.radius_squared
+        let [.., squared] = self.fields;
+        squared
     }
 }
 
@@ -110,37 +112,46 @@ impl<N: Single> Spheres<N> {
             [center.x, center.y, center.z, radius],
             [zero, zero, zero, zero.splat(f32::INFINITY)],
         );
-        let bounds = bounds::<N, P>(Vector3::new(x, y, z), radius);
-        let ([left, right], [bottom, top]) = (bounds.across, bounds.down);
-        let [near, far] = bounds.depths;
-        let squared = radius * radius;
-        [x, y, z, squared, left, right, bottom, top, near, far]
+        let [[left, right], [bottom, top]] = if P::IS_PERSPECTIVE {
+            let planes = TangentPlanes::new(z, radius);
+            [
+                planes.slopes_of_sphere(x, radius),
+                planes.slopes_of_sphere(y, radius),
+            ]
+        } else {
+            [around(x, radius), around(y, radius)]
+        };
+        let mut fields = [x, y, z, radius, left, right, bottom, top, zero, zero, zero];
+        ProjectedSphere::<P>::complete(&mut fields);
+        fields
     }
 }
 
-/// Bounds of the slopes and depths of spheres, or of their coordinates.
+/// Bounds of one coordinate of the points of a sphere, with parallel rays.
 #[inline(always)]
-fn bounds<N: Single, P: Projection>(center: Vector3<N>, radius: N) -> ViewBounds<N> {
+fn around<N: Single>(center: N, radius: N) -> [N; 2] {
+    outward([center - radius, center + radius])
+}
+
+/// Bounds of the depths of a sphere.
+#[inline(always)]
+fn depths<N: Single, P: Projection>(center: N, radius: N) -> [N; 2] {
     if !P::IS_PERSPECTIVE {
-        return bounds_around(center, Vector3::new(radius, radius, radius));
+        return around(center, radius);
     }
-    let planes = TangentPlanes::new(center.z, radius);
-    let reach = radius + (center.z.abs() + radius) * (DEPTH_ROUNDINGS * UNIT_ROUNDOFF);
-    ViewBounds {
-        across: planes.slopes_of_sphere(center.x, radius),
-        down: planes.slopes_of_sphere(center.y, radius),
-        depths: [center.z - reach, center.z + reach],
-    }
+    let reach = radius + (center.abs() + radius) * (DEPTH_ROUNDINGS * UNIT_ROUNDOFF);
+    [center - reach, center + reach]
 }
 
 impl<P: Projection> Projected for ProjectedSphere<P> {
-    /// The centre, the square of the radius, and the bounds of x/z, of y/z and of z.
     type Fields<T: Field> = [T; FIELDS];
+
+    const STORED: usize = STORED;
 
     /// The bounds hold nothing.
     const NOWHERE: [f32; FIELDS] = {
         const FAR: f32 = f32::INFINITY;
-        [0.0, 0.0, 0.0, 0.0, FAR, -FAR, FAR, -FAR, FAR, -FAR]
+        [0.0, 0.0, 0.0, 0.0, FAR, -FAR, FAR, -FAR, 0.0, 0.0, 0.0]
     };
 
     fn fields_of<T: Field>(value: T) -> [T; FIELDS] {
@@ -148,38 +159,28 @@ impl<P: Projection> Projected for ProjectedSphere<P> {
     }
 
     #[inline(always)]
+    fn complete<N: Single>(fields: &mut [N; FIELDS]) {
+        let [_, _, z, radius, ..] = *fields;
+        let [near, far] = depths::<N, P>(z, radius);
+        [fields[STORED], fields[STORED + 1], fields[STORED + 2]] = [near, far, radius * radius];
+    }
+
+    #[inline(always)]
     fn to_fields(&self) -> [f32; FIELDS] {
-        let Vec3 { x, y, z } = self.center;
-        let ([left, right], [bottom, top]) = (self.bounds.across, self.bounds.down);
-        let [near, far] = self.bounds.depths;
-        [
-            x,
-            y,
-            z,
-            self.radius_squared,
-            left,
-            right,
-            bottom,
-            top,
-            near,
-            far,
-        ]
+        self.fields
     }
 
     #[inline(always)]
     fn from_fields(fields: [f32; FIELDS]) -> Self {
-        let [x, y, z, radius_squared, ..] = fields;
         Self {
-            center: Vec3::new(x, y, z),
-            radius_squared,
-            bounds: Self::bounds_of(&fields),
+            fields,
             projection: PhantomData,
         }
     }
 
     #[inline(always)]
     fn bounds_of<N: Single>(fields: &[N; FIELDS]) -> ViewBounds<N> {
-        let [_, _, _, _, left, right, bottom, top, near, far] = *fields;
+        let [_, _, _, _, left, right, bottom, top, near, far, _] = *fields;
         ViewBounds {
             across: [left, right],
             down: [bottom, top],

@@ -127,13 +127,13 @@ impl<P: Projection> BoxTest for ProjectedSphere<P> {
     type Projection = P;
 
     #[inline(always)]
-    fn outline<N: Single>(_: &[N; 10], across: [N; 2], down: [N; 2]) -> Outline<N> {
+    fn outline<N: Single>(_: &[N; 11], across: [N; 2], down: [N; 2]) -> Outline<N> {
         [across[0], across[1], down[0], down[1]]
     }
 
     #[inline(always)]
-    fn misses<N: Single>(fields: &[N; 10], outline: &Outline<N>, depths: [N; 2]) -> N::Mask {
-        let [x, y, z, radius_squared, ..] = *fields;
+    fn misses<N: Single>(fields: &[N; 11], outline: &Outline<N>, depths: [N; 2]) -> N::Mask {
+        let [x, y, z, .., radius_squared] = *fields;
         let [x0, x1, y0, y1] = *outline;
         let depths = common(Self::bounds_of(fields).depths, depths);
         let (x, y) = if P::IS_PERSPECTIVE {
@@ -149,8 +149,8 @@ impl<P: Projection> BoxTest for ProjectedSphere<P> {
     }
 
     #[inline(always)]
-    fn image<D: Double>(fields: &[D; 10]) -> Image<D> {
-        let [x, y, z, radius_squared, ..] = *fields;
+    fn image<D: Double>(fields: &[D; 11]) -> Image<D> {
+        let [x, y, z, .., radius_squared] = *fields;
         Image::of_sphere([x, y, z], radius_squared)
     }
 }

@@ -1,7 +1,8 @@
 use alloc::vec::Vec;
 
 use super::kernel::ShadedLight;
-use crate::cull::lanes::{LANES, Record};
+use crate::cull::lanes::LANES;
+use crate::cull::records::Line;
 use crate::light::{Vpl, Vsgl, Xi};
 use crate::lobe::{FIRST_NUMBERS, Lobe};
 
@@ -33,7 +34,7 @@ pub(super) const XI: usize = LOBE + FIRST_NUMBERS;
 #[derive(Clone, Debug)]
 pub struct ShadingBatch<L> {
     /// [`lines_per_light`](Self::lines_per_light) of each light.
-    pub(super) lines: Vec<Record>,
+    pub(super) lines: Vec<Line>,
     /// The lobes, if they are more than their numbers.
     pub(in crate::cull) lobes: Vec<L>,
 }
@@ -99,11 +100,11 @@ impl<L: Lobe + Clone> ShadingBatch<L> {
         line[..LOBE].copy_from_slice(&[p.x, p.y, p.z, light.flux()]);
         line[LOBE..XI].copy_from_slice(first);
         line[XI] = xi.get();
-        self.lines.push(Record(line));
+        self.lines.push(Line(line));
         if Self::lines_per_light() > 1 {
             let mut line = [0.0; LINE];
             line.copy_from_slice(rest);
-            self.lines.push(Record(line));
+            self.lines.push(Line(line));
         }
         if L::has_more_than_numbers() {
             self.lobes.push(lobe.clone());
@@ -140,7 +141,7 @@ impl ShadingBatch<Vsgl> {
         let numbers = [axis.x, axis.y, axis.z, lobe.sharpness(), light.spread()];
         line[LOBE..LOBE + numbers.len()].copy_from_slice(&numbers);
         line[XI] = xi.get();
-        self.lines.push(Record(line));
+        self.lines.push(Line(line));
     }
 }
 

@@ -4,7 +4,7 @@ use fearless_simd::{Simd, SimdMask};
 
 use super::batch::{LINE, LOBE, ShadingBatch, XI};
 use super::receiver::ReceiverLanes;
-use crate::cull::lanes::load_lines;
+use crate::cull::records::load_lines;
 use crate::light::unit;
 use crate::lobe::{FIRST_NUMBERS, Lobe, LobeNumbers};
 use crate::num::{F32Lanes, Real, Vector3};
