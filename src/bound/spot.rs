@@ -134,7 +134,8 @@ impl SpotLobe {
 #[inline(always)]
 fn ellipsoids<N: Single>(axis: Vector3<N>, [inner, outer]: [N; 2]) -> Ellipsoids<N> {
     let outer = outer.max(outer.splat(LEAST_OUTER));
-    Revolved::around_spot(inner, outer).along(axis, outer.splat(REACH))
+    let revolved = Candidate::around_spot(inner, outer).revolved();
+    revolved.along(axis, outer.splat(REACH))
 }
 
 impl Bounded for SpotLobe {
@@ -147,7 +148,18 @@ impl Bounded for SpotLobe {
     }
 }
 
-impl<N: Single> Revolved<N> {
+/// An ellipsoid of revolution, before the only root that all kinds need.
+#[derive(Clone, Copy)]
+struct Candidate<N> {
+    /// The distance of the centre from the light, along the axis.
+    center: N,
+    /// a
+    along: N,
+    /// 1/k = b²/a²
+    inverse: N,
+}
+
+impl<N: Single> Candidate<N> {
     /// The ellipsoid around a spot light's lobe for `inner` = 1 − c₁ and `outer` = 1 − c₂.
     #[inline(always)]
     fn around_spot(inner: N, outer: N) -> Self {
@@ -170,9 +182,32 @@ impl<N: Single> Revolved<N> {
     }
 
     #[inline(always)]
+    fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
+        let [center, along, inverse] = N::select_all(
+            mask,
+            [yes.center, yes.along, yes.inverse],
+            [no.center, no.along, no.inverse],
+        );
+        Self {
+            center,
+            along,
+            inverse,
+        }
+    }
+
+    #[inline(always)]
     fn is_smaller(self, other: Self) -> N::Mask {
-        let volume = |it: Self| it.along * (it.across * it.across);
+        let volume = |it: Self| it.along * it.along * (it.along * it.inverse);
         volume(other).gt(volume(self))
+    }
+
+    #[inline(always)]
+    fn revolved(self) -> Revolved<N> {
+        Revolved {
+            center: self.center,
+            along: self.along,
+            across: self.along * self.inverse.sqrt(),
+        }
     }
 
     /// The ellipsoid with the light as a pole, for `inner` ≤ 1/3 and `outer` ≤ 1.
@@ -198,7 +233,7 @@ impl<N: Single> Revolved<N> {
         Self {
             center: along,
             along,
-            across: along * inverse.sqrt(),
+            inverse,
         }
     }
 
@@ -227,7 +262,7 @@ impl<N: Single> Revolved<N> {
         Self {
             center: along.one_minus(),
             along,
-            across: along * inverse.sqrt(),
+            inverse,
         }
     }
 
@@ -241,7 +276,7 @@ impl<N: Single> Revolved<N> {
         Self {
             center,
             along: radius,
-            across: radius,
+            inverse: radius.splat(1.0),
         }
     }
 }

@@ -162,7 +162,7 @@ impl<P: Projected> LightBatch<P> {
             }
         }
         // Last, since it branches: what is computed for it is found by then.
-        let (lines, fields) = (&mut self.lines, fields.as_ref().iter());
+        let (lines, fields) = (&mut self.lines[..], fields.as_ref().iter());
         let of_first = fields.clone().map(|field| field.0);
         store_records::<S, P>(simd, of_first, first, lines, start);
         let of_second = fields.map(|field| field.1);
