@@ -10,8 +10,8 @@
 //!
 //! - ω·n ≤ w·n + c;
 //! - ‖ω − u‖ ≥ ‖w − u‖ − c for any u;
-//! - the half vector ω_i + ω lies within c of h. So ‖h‖ − c ≤ ‖ω_i + ω‖ ≤ min(‖h‖ + c, 2), and the sine of
-//!   its angle to n is ‖(ω_i + ω) × n‖/‖ω_i + ω‖ ≥ (‖h × n‖ − c)/min(‖h‖ + c, 2).
+//! - the half vector ω_i + ω lies within c of h. So ‖h‖ − c ≤ ‖ω_i + ω‖ ≤ min(‖h‖ + c, 2). All of them fill an
+//!   elliptic cone, whose least angle to n is in closed form (`half_vectors`).
 //!
 //! Each is an equality for c = 0, so a bound that is made of them becomes the function itself as the cap closes.
 //!
@@ -22,7 +22,7 @@
 //! # Rounding
 //!
 //! All of these quantities are computed with an absolute error of a few u. So the chord is enlarged by
-//! [`CHORD_ROUNDINGS`] u, and the quotient of the sine is rounded down.
+//! [`CHORD_ROUNDINGS`] u, and the sine is rounded down.
 
 use glam::Vec3;
 

@@ -153,6 +153,6 @@ impl<N: Single> Caps<N> {
     /// The half vectors ω_i + ω for ω_i in `incoming`.
     #[inline(always)]
     pub fn half_vectors(&self, incoming: &Self) -> HalfVectors<N> {
-        HalfVectors::within(incoming.axis + self.axis, self.chord + incoming.chord)
+        HalfVectors::of(incoming, self)
     }
 }

@@ -116,12 +116,11 @@ pub(super) fn ndf_at<N: Single>(roughness: N, half_vector: Vector3<N>, normal: V
     N::select(is_above, ndf, cosine.zero())
 }
 
-/// D for the sine of θ_m, which is at most 1.
+/// D for the squared sine of θ_m, which is at most 1.
 #[inline(always)]
-pub(super) fn ndf_of_sine<N: Single>(alpha_squared: N, sine: N) -> N {
-    let (sine_squared, cosine_squared) = (sine * sine, sine.one_minus() * (sine + 1.0));
-    let one = sine.splat(1.0);
-    ndf_of_squares(alpha_squared, cosine_squared, sine_squared, one)
+pub(super) fn ndf_of_squared_sine<N: Single>(alpha_squared: N, squared_sine: N) -> N {
+    let spread = alpha_squared * squared_sine.one_minus() + squared_sine;
+    alpha_squared * FRAC_1_PI / (spread * spread)
 }
 
 /// D = α²/(π (α²c² + s²)²), with c² and s² given times `length_squared`.

@@ -193,14 +193,10 @@ impl<G: MaskingShadowing> LobeFamily for GgxFamily<G> {
             |half_vectors| {
                 let [least, most] = ranges.roughness;
                 let range = [cap.splat(least * least), cap.splat(most * most)];
-                let mut ndf = members.ndf(
-                    half_vectors,
-                    #[inline(always)]
-                    |sine| {
-                        let worst = worst_alpha_squared(range, sine);
-                        [worst, worst * (1.0 / ranges.stretch)]
-                    },
-                );
+                let sine = half_vectors.least_squared_sine_to_any(&members.normals);
+                let worst = worst_alpha_squared(range, sine);
+                let typical = worst * (1.0 / ranges.stretch);
+                let mut ndf = members.ndf(half_vectors, sine, [worst, typical]);
                 ndf.greatest = ndf.greatest * ranges.stretch;
                 ndf
             },

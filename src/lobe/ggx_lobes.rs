@@ -229,11 +229,8 @@ impl<N: Single> GgxLobes<N> {
             reflectance,
             #[inline(always)]
             |half_vectors| {
-                members.ndf(
-                    half_vectors,
-                    #[inline(always)]
-                    |_| [alpha_squared; 2],
-                )
+                let sine = half_vectors.least_squared_sine(self.normal);
+                members.ndf(half_vectors, sine, [alpha_squared; 2])
             },
             #[inline(always)]
             |outgoing_cosine| masking_root(self.roughness, outgoing_cosine),

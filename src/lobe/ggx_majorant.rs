@@ -4,12 +4,14 @@
 //!
 //! The members have normals within a chord c_n of n, incoming directions within c_i of i, cosines of at least μ,
 //! roots of G1 of at least Λ, roughnesses in \[α₀, α₁\], and Fresnel factors of at most F̂(cosθ_h). One lobe is
-//! the family whose chords are zero. Let w be the axis of the cap, c_w its chord, h = i + w and c = c_i + c_w.
-//! The half vector of any member and any direction lies within c of h. So
+//! the family whose chords are zero. Let w be the axis of the cap, c_w its chord, h = i + w and c = c_i + c_w. Then, for
+//! any member and any direction of the cap,
 //!
-//! - its length is between ‖h‖ − c and L = min(‖h‖ + c, 2), and cosθ_h is half of that;
-//! - the sine of its angle to the member's normal is at least s = max(0, (‖h × n‖ − c)/L − c_n), since the cross
-//!   product of a unit vector changes by no more than the other vector does;
+//! - the half vector is within c of h, so its length is between ‖h‖ − c and L = min(‖h‖ + c, 2), and cosθ_h is half of
+//!   that;
+//! - the sine of its angle to the member's normal is at least s = max(0, s₀ − c_n), where s₀ is the least sine of the
+//!   angles between n and the elliptic cone of the unit half vectors (`half_vectors`), since the cross product with a
+//!   unit vector changes by no more than the other vector does;
 //! - μ_o is at most m = min(1, n·w + c_w + c_n), and there is nothing to bound if m ≤ 0.
 //!
 //! D falls with s. As a function of a = α² it is a/(π (a(1 − s²) + s²)²), which rises up to a = s²/(1 − s²) and
@@ -28,15 +30,10 @@
 //! # It nests
 //!
 //! Let n′, i′, w′ and their chords be those of a greater pair: c′_n ≥ ‖n′ − n‖ + c_n, and so on. Then
-//! ‖h′ − h‖ ≤ c′ − c. Hence ‖h′‖ − c′ ≤ ‖h‖ − c and L′ ≥ L, and
-//!
-//! ‖h′ × n′‖ − c′ ≤ ‖h × n′‖ − c ≤ ‖h × n‖ − c + ‖h‖ ‖n′ − n‖.
-//!
-//! By ‖h‖ ≤ L ≤ L′, the last term over L′ is at most ‖n′ − n‖ ≤ c′_n − c_n. The rest over L′ is at most
-//! (‖h × n‖ − c)/L if that is positive, and else not positive. So s′ ≤ s. In the same way m′ ≥ m, and a chord
-//! that is clamped to 2 makes s′ zero and m′ one. D̂ is a maximum over a set that grows with the family, of a function
-//! that falls with s; F̂ and the bound of G2 are monotonic in all of their numbers. So the majorant of the greater
-//! pair is at least that of the lesser.
+//! ‖h′ − h‖ ≤ c′ − c. Hence ‖h′‖ − c′ ≤ ‖h‖ − c and L′ ≥ L. The cone of the greater pair holds that of the lesser, so
+//! s₀′ ≤ s₀ + ‖n′ − n‖, and s′ ≤ s. In the same way m′ ≥ m, and a chord that is clamped to 2 makes s′ zero and m′ one.
+//! D̂ is a maximum over a set that grows with the family, of a function that falls with s; F̂ and the bound of G2 are
+//! monotonic in all of their numbers. So the majorant of the greater pair is at least that of the lesser.
 //!
 //! # The typical value
 //!
@@ -44,7 +41,7 @@
 //! Gaussian spread of half vectors: α̂² + ½(c/‖h‖ + c_n)², with the α̂ of the bound, or α_xα_y.
 
 use super::fresnel::quasi_convex_maximum;
-use super::ggx::ndf_of_sine;
+use super::ggx::ndf_of_squared_sine;
 use super::half_vectors::HalfVectors;
 use super::{Caps, GgxLobes, Majorant, MaskingShadowing};
 use crate::num::{Real, Single};
@@ -152,20 +149,20 @@ impl<N: Single> GgxMembers<N> {
         )
     }
 
-    /// The majorant of an isotropic D. `alpha_squared` gives, for the sine s, the α² that makes D greatest, and a
-    /// typical one.
+    /// The majorant of an isotropic D for the least squared sine s². `alpha_squared` gives the α² that makes D
+    /// greatest there, and a typical one.
     #[inline(always)]
     pub fn ndf(
         &self,
         half_vectors: &HalfVectors<N>,
-        alpha_squared: impl FnOnce(N) -> [N; 2],
+        squared_sine: N,
+        [worst, typical]: [N; 2],
     ) -> Majorant<N> {
-        let sine = half_vectors.least_sine(&self.normals);
-        let [worst, typical] = alpha_squared(sine);
-        let typical_sine = half_vectors.typical_sine(&self.normals);
+        let typical_squared_sine = half_vectors.typical_squared_sine(self.normals.axis);
+        let filtered = self.filtered(typical, half_vectors);
         Majorant {
-            greatest: ndf_of_sine(worst, sine),
-            typical: ndf_of_sine(self.filtered(typical, half_vectors), typical_sine),
+            greatest: ndf_of_squared_sine(worst, squared_sine),
+            typical: ndf_of_squared_sine(filtered, typical_squared_sine),
         }
     }
 
@@ -177,10 +174,10 @@ impl<N: Single> GgxMembers<N> {
     }
 }
 
-/// The a in \[α₀², α₁²\] for which D is greatest, for the sine s in \[0, 1\].
+/// The a in \[α₀², α₁²\] for which D is greatest, for a squared sine in \[0, 1\].
 #[inline(always)]
-pub(super) fn worst_alpha_squared<N: Single>(range: [N; 2], sine: N) -> N {
+pub(super) fn worst_alpha_squared<N: Single>(range: [N; 2], squared_sine: N) -> N {
     let [least, most] = range;
-    let ratio = sine * sine / (sine.one_minus() * (sine + 1.0));
+    let ratio = squared_sine / squared_sine.one_minus();
     Real::min(Real::max(ratio, least), most)
 }

@@ -6,6 +6,8 @@
 mod closing;
 mod members;
 
+use std::f64::consts::TAU;
+
 use fastrand::Rng;
 use members::{Member, surfaces};
 use rayon::prelude::*;
@@ -16,7 +18,8 @@ use stochastic_light_culling::{
 };
 use support::adversary::{direction, log_uniform, unit_vector};
 use support::caps::nearest;
-use support::reference::{MaskedAlone, Masking, Vector};
+use support::generators::Lit;
+use support::reference::{self, MaskedAlone, Masking, Surface, Vector};
 
 const CAPS_PER_FAMILY: usize = 32;
 /// 2⁻²⁴
@@ -106,7 +109,13 @@ fn check_nesting<F: LobeFamily>(rng: &mut Rng, cap: &Cap, (part, whole): (&F, &F
         0 => 0.0,
         _ => log_uniform(rng, 1e-6, 1.0),
     };
-    let around = direction((axis + unit_vector(rng) * offset).unit());
+    check_nesting_around(axis + unit_vector(rng) * offset, cap, (part, whole));
+}
+
+/// As [`check_nesting`], for the cap around the direction of `aim`.
+fn check_nesting_around<F: LobeFamily>(aim: Vector, cap: &Cap, (part, whole): (&F, &F)) {
+    let axis = Vector::from(*cap.axis()).unit();
+    let around = direction(aim.unit());
     let apart = (Vector::from(*around).unit() - axis).length();
     let chord = apart + f64::from(cap.chord()) + 96.0 * UNIT_ROUNDOFF;
     let greater = Cap::new(around, chord.min(2.0) as f32).expect("in range");
@@ -115,6 +124,43 @@ fn check_nesting<F: LobeFamily>(rng: &mut Rng, cap: &Cap, (part, whole): (&F, &F
         less <= more * (1.0 + 512.0 * UNIT_ROUNDOFF),
         "{less} in {cap:?}, but {more} in {greater:?}: {part:?} {whole:?}"
     );
+}
+
+/// Half vectors are in elliptic cones, which are flattest near grazing. Moves of a normal, of an incoming direction and
+/// of a cap, away from the mirror direction or anywhere, change the least sine by as much as the chords pay for.
+#[test]
+fn bounds_nest_near_grazing() {
+    search(|rng| {
+        let chord = log_uniform(rng, 1e-5, 3e-2);
+        let near = |rng: &mut Rng, axis: Vector, away: Vector| {
+            let toward = [away, away * -1.0, unit_vector(rng)][rng.usize(0..3)];
+            let step = match rng.u8(0..3) {
+                0 => 0.0,
+                _ => chord * log_uniform(rng, 1e-2, 3.0),
+            };
+            (axis + (toward + unit_vector(rng) * (0.3 * rng.f64())) * step).unit()
+        };
+        let normal = unit_vector(rng);
+        let side = normal.orthogonal();
+        let side = side.turned(normal.cross(side), TAU * rng.f64());
+        let incoming = normal.turned(side, log_uniform(rng, 0.01, 0.7).acos());
+        let mirror = Surface { normal, incoming }.mirror();
+        let outgoing = (mirror + unit_vector(rng) * (chord * log_uniform(rng, 0.8, 60.0))).unit();
+        let away = (outgoing - mirror).unit();
+        let alpha = (chord * log_uniform(rng, 0.3, 30.0)).clamp(1e-4, 1.0) as f32;
+        let family = |normal, incoming| {
+            let parameters = (alpha, reference::Fresnel::None, Masking::HeightCorrelated);
+            members::ggx_of::<HeightCorrelated>(parameters, &Lit::new(normal, incoming))
+                .lobe
+                .family()
+        };
+        let part = family(normal, incoming);
+        let other = family(near(rng, normal, away * -1.0), near(rng, incoming, away));
+        let whole = GgxFamily::union([part, other].into_iter()).expect("of two");
+        let cap = Cap::new(direction(outgoing), chord as f32).expect("in range");
+        check_nesting_around(near(rng, outgoing, away), &cap, (&part, &whole));
+        1
+    });
 }
 
 /// Draws members of a kind, and checks them.
