@@ -82,46 +82,73 @@ impl<S: Simd, R: Lobe> ReceiverLanes<S> for Receivers<S, R> {
     }
 }
 
-/// Pairs that wait until each lane has one.
-struct Pairs<S: Simd, R> {
+/// The points of pairs that wait until each lane has one.
+///
+/// Apart from [`ListLanes`], which is in memory since a list may begin at any lane: in one structure with it these
+/// vectors would be in memory, too, and a vector that is written in parts is slow to read.
+struct PointLanes<S: Simd, R> {
+    points: Points<F32Lanes<S>>,
+    receivers: R,
+}
+
+/// What lists say of these pairs.
+struct ListLanes {
     /// The light of each lane, and whatever light after the last.
     lights: [u32; 2 * LANES],
     /// The weight of each lane's light, if lists have weights.
     weights: [f32; 2 * LANES],
     /// The turn of each lane's point.
     turns: [usize; 2 * LANES],
-    points: Points<F32Lanes<S>>,
-    receivers: R,
     len: usize,
 }
 
-impl<S: Simd, R: FilledLanes<S>> Pairs<S, R> {
+impl<S: Simd, R: FilledLanes<S>> PointLanes<S, R> {
     #[inline(always)]
     fn new(simd: S) -> Self {
         let zero = Vector3::splat(F32Lanes::new(simd, 0.0), Vec3::ZERO.into());
         Self {
-            lights: [0; 2 * LANES],
-            weights: [1.0; 2 * LANES],
-            turns: [0; 2 * LANES],
             points: Points {
                 position: zero,
                 normal: zero,
             },
             receivers: R::new(simd),
+        }
+    }
+
+    /// Fills the lanes from `start` on with the point.
+    #[inline(always)]
+    fn fill(&mut self, simd: S, start: usize, (point, receiver): (&ShadedPoint, &R::One)) {
+        let from_start = mask_from::<S>(simd, start);
+        let zero = F32Lanes::new(simd, 0.0);
+        let position = Vector3::splat(zero, point.position.into());
+        let normal = Vector3::splat(zero, point.normal.into());
+        self.points = Points {
+            position: Vector3::select(from_start, position, self.points.position),
+            normal: Vector3::select(from_start, normal, self.points.normal),
+        };
+        self.receivers.fill(start, from_start, receiver);
+    }
+}
+
+impl ListLanes {
+    fn new() -> Self {
+        Self {
+            lights: [0; 2 * LANES],
+            weights: [1.0; 2 * LANES],
+            turns: [0; 2 * LANES],
             len: 0,
         }
     }
 
-    /// Fills lanes with the point and the first lights of `list`. Returns the others.
+    /// Fills the lanes from `start` on with the first lights of `list`, which is that of the point of this turn.
+    /// Returns the others.
     #[inline(always)]
-    fn fill<'a, D: Decision>(
+    fn fill<'a, S: Simd, D: Decision>(
         &mut self,
-        simd: S,
+        start: usize,
         turn: usize,
-        (point, receiver): (&ShadedPoint, &R::One),
         list: WeightedList<'a>,
     ) -> WeightedList<'a> {
-        let start = self.len % LANES;
         let WeightedList {
             lights,
             mut weights,
@@ -135,22 +162,16 @@ impl<S: Simd, R: FilledLanes<S>> Pairs<S, R> {
             copy(taken, &mut self.weights[start..]);
         }
         self.turns[start..][..LANES].fill(turn);
-        let from_start = mask_from::<S>(simd, start);
-        let zero = F32Lanes::new(simd, 0.0);
-        let Points { position, normal } = &mut self.points;
-        for (vector, new) in [(position, point.position), (normal, point.normal)] {
-            *vector = Vector3::select(from_start, Vector3::splat(zero, new.into()), *vector);
-        }
-        self.receivers.fill(start, from_start, receiver);
         self.len = start + count;
         WeightedList { lights, weights }
     }
 
     /// Evaluates the pairs, and folds those that are accepted into `state`.
     #[inline(always)]
-    fn evaluate<D: Decision, L: ShadedLight, A>(
+    fn evaluate<S: Simd, D: Decision, L: ShadedLight, A>(
         &mut self,
         simd: S,
+        point_lanes: &PointLanes<S, impl FilledLanes<S>>,
         settings: &Settings<D>,
         lights: &ShadingBatch<L>,
         mut state: A,
@@ -171,7 +192,7 @@ impl<S: Simd, R: FilledLanes<S>> Pairs<S, R> {
             None,
             &gathered,
             lobe_of,
-            &self.points,
+            &point_lanes.points,
         );
         let decided = arriving.and_then(
             #[inline(always)]
@@ -180,7 +201,9 @@ impl<S: Simd, R: FilledLanes<S>> Pairs<S, R> {
                     xi: gathered.xi,
                     weight: gathered.xi.load(&self.weights),
                 };
-                settings.decision.decide(arriving, drawn, &self.receivers)
+                settings
+                    .decision
+                    .decide(arriving, drawn, &point_lanes.receivers)
             },
         );
         let Some(found) = decided else {
@@ -234,18 +257,20 @@ pub(super) fn fold_pairs<'l, S: Simd, D: Decision, L: ShadedLight, R: FilledLane
     mut state: A,
     mut each: impl FnMut(A, usize, &Estimate, f32) -> A,
 ) -> A {
-    let mut pairs = Pairs::<S, R>::new(simd);
+    let (mut pairs, mut pair_points) = (ListLanes::new(), PointLanes::<S, R>::new(simd));
     for (turn, (point, receiver, list)) in points.enumerate() {
         let mut rest = list.with_any_weights();
         while !rest.lights.is_empty() {
-            rest = pairs.fill::<D>(simd, turn, (&point, &receiver), rest);
+            let start = pairs.len % LANES;
+            pair_points.fill(simd, start, (&point, &receiver));
+            rest = pairs.fill::<S, D>(start, turn, rest);
             if pairs.len == S::f32s::LEN {
-                state = pairs.evaluate(simd, settings, lights, state, &mut each);
+                state = pairs.evaluate(simd, &pair_points, settings, lights, state, &mut each);
             }
         }
     }
     if pairs.len > 0 {
-        state = pairs.evaluate(simd, settings, lights, state, &mut each);
+        state = pairs.evaluate(simd, &pair_points, settings, lights, state, &mut each);
     }
     state
 }
