@@ -102,8 +102,8 @@ pub(super) fn load_lines<'a, S: Simd>(
     rotate(vectors, LANES, lanes.ilog2())
 }
 
-/// Writes a record for each lane of `fields`, the inverse of [`load_records`]: those of the lanes in `chosen` from
-/// `first` on. The rest of as many as there are lanes may change too.
+/// Writes a record for each lane of `fields`, the inverse of [`load_records`]: those of the lanes in `chosen` to the
+/// places from `first` on. The rest of as many as there are lanes may change too.
 #[inline(always)]
 pub(super) fn store_records<S: Simd, P: Projected>(
     simd: S,
@@ -118,9 +118,9 @@ pub(super) fn store_records<S: Simd, P: Projected>(
         *vector = field;
     }
     let vectors = rotate(vectors, P::STORED, lanes.min(P::STORED).ilog2());
-    let lines =
-        &mut lines[first / per_line::<P>()..][..lines_for::<P>(lanes + first % per_line::<P>())];
-    let first = first % per_line::<P>();
+    // Vectors may begin in the middle of a line.
+    let (line, first) = (first / per_line::<P>(), first % per_line::<P>());
+    let lines = &mut lines[line..][..lines_for::<P>(first + lanes)];
     // Most vectors are full.
     if chosen.all_true() {
         if lanes > P::STORED && first == 0 {

@@ -46,7 +46,8 @@ pub struct EvenNoise {
 
 impl EvenNoise {
     /// Scales δ by the radiance of a tile over `typical` = L₀, the radiance at which δ is that of the frame. The mean
-    /// of a picture does, if it is one of frames long ago, or of another seed.
+    /// of a picture does, if it is one of frames long ago, or of another seed; where most of it is dark, the radiance of
+    /// its median tile.
     ///
     /// Scales are in \[1/64, 64\], unless [another range](Self::with_range) is set.
     ///
