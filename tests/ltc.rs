@@ -54,7 +54,7 @@ fn knots_are_reproduced() {
         let element = 4 * KNOTS * KNOTS + (i * KNOTS + j) * 2;
         assert_eq!(
             bytes_at(element, 2),
-            fit::albedo_counts(i, j),
+            fit::albedo_counts(&fit::layout::MATRICES, i, j),
             "albedos at ({i}, {j})"
         );
     }
@@ -65,17 +65,21 @@ fn errors_are_as_documented() {
     const ROUGHNESSES: [f64; 6] = [1.0, 0.7, 0.4, 0.2, 0.1, 0.05];
     // By angle of incidence, for F = 1 and F0 = 0.04.
     let most = [
-        (0.0, 1.0, [0.031, 0.025, 0.028, 0.017, 0.0055, 0.003]),
+        (0.0, 1.0, [0.031, 0.025, 0.028, 0.015, 0.0035, 0.0005]),
         (60.0, 1.0, [0.055, 0.065, 0.098, 0.07, 0.042, 0.023]),
         (85.0, 1.0, [0.16, 0.17, 0.29, 0.28, 0.21, 0.125]),
         (60.0, 0.04, [0.31, 0.39, 0.425, 0.335, 0.2, 0.1]),
         (85.0, 0.04, [0.74, 0.76, 0.72, 0.57, 0.4, 0.235]),
     ];
     for (degrees, f0, row) in most {
+        println!("{degrees}°, F0 = {f0}:");
         for (alpha, most) in ROUGHNESSES.into_iter().zip(row) {
             let LtcErrors {
-                relative_l2: error, ..
+                relative_l2: error,
+                energy,
+                ..
             } = LtcErrors::of(alpha, degrees, f0, 96).unwrap();
+            println!("  α = {alpha}: {error:.5}, with {energy:.4} of the energy");
             assert!(error <= most, "α = {alpha}, {degrees}°, F0 = {f0}: {error}");
         }
     }
@@ -84,7 +88,7 @@ fn errors_are_as_documented() {
 proptest! {
     #![proptest_config(cases(300))]
 
-    /// For F = 1 the energy is that of GGX, for any roughness and incidence.
+    /// For F = 1 the energy is nearly that of GGX, and hardly more, for any roughness and incidence.
     #[test]
     fn energy_is_that_of_ggx(
         alpha in generators::up_to_one(1e-5),
@@ -96,7 +100,7 @@ proptest! {
         let lobe = LtcLobe::new(Ggx::new(alpha).unwrap(), NoFresnel, incidence);
         let [exact, _] = albedos(f64::from(alpha), mu);
         let ratio = f64::from(lobe.reflected()) / exact;
-        prop_assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+        prop_assert!(0.99 < ratio && ratio < 1.01, "{ratio}");
     }
 }
 

@@ -23,7 +23,7 @@ use support::ggx_nodes::{Node, albedos, nodes};
 #[path = "../../src/lobe/ltc_table.rs"]
 pub mod layout;
 
-use layout::{KNOTS, MATRIX_SCALES};
+use layout::{KNOTS, MATRIX_SCALES, Matrices};
 
 /// Nodes along each of two coordinates, of each of two sets.
 const NODES_OF_FIT: usize = 24;
@@ -36,6 +36,8 @@ const SMOOTHNESS: f64 = 1e-6;
 /// α at the first knots, where the elements are at their limit.
 const LEAST_ALPHA: f64 = 1.6e-5;
 
+/// The most of the energy that a fit gives away to be nearer. Part of it is left for interpolation and rounding.
+const MOST_LET_GO: f64 = 2.5e-3;
 /// The weight of the squared skew. Bounds of skewed lobes are loose, and a narrow lobe gains nothing by skew.
 const SKEW: f64 = 4e-3;
 
@@ -45,12 +47,15 @@ pub type Elements = [f64; 4];
 /// The bytes of the table.
 pub fn table() -> Vec<u8> {
     let columns: Vec<_> = (0..KNOTS).into_par_iter().map(column).collect();
-    let matrices = (0..KNOTS).flat_map(|i| columns.iter().map(move |column| column[i]));
+    let knots = (0..KNOTS).flat_map(|i| columns.iter().map(move |column| column[i]));
+    let knots: Box<[_]> = knots.collect();
+    let matrices: Box<Matrices> = knots.try_into().expect("one for each knot");
     let albedos: Vec<_> = (0..KNOTS * KNOTS)
         .into_par_iter()
-        .map(|at| albedo_counts(at / KNOTS, at % KNOTS))
+        .map(|at| albedo_counts(&matrices, at / KNOTS, at % KNOTS))
         .collect();
-    let counts = matrices.flatten().chain(albedos.into_iter().flatten());
+    let counts = matrices.iter().flatten().copied();
+    let counts = counts.chain(albedos.into_iter().flatten());
     counts.flat_map(u16::to_le_bytes).collect()
 }
 
@@ -74,11 +79,14 @@ pub fn column(j: usize) -> Vec<[u16; 4]> {
     elements.into_iter().map(counts).collect()
 }
 
-/// The counts of n_A and f_A at the knots `i` of √α and `j` of tan(θ/2) + tan(δ/2).
-pub fn albedo_counts(i: usize, j: usize) -> [u16; 2] {
+/// The counts of n_A and f_A at the knots `i` of √α and `j` of tan(θ/2) + tan(δ/2), both times the share of the
+/// energy with which a lobe of these `matrices` is nearest.
+pub fn albedo_counts(matrices: &Matrices, i: usize, j: usize) -> [u16; 2] {
     let alpha = alpha_at(i);
     let mu = cosine_at(alpha, 2.0 * j as f64 / (KNOTS - 1) as f64);
-    albedos(alpha, mu).map(|albedo| count(albedo, 0))
+    let elements = layout::matrix_of(matrices, alpha.sqrt(), (1.0 - mu).sqrt());
+    let share = Target::new(alpha, mu).error(elements).1;
+    albedos(alpha, mu).map(|albedo| count(share * albedo, 0))
 }
 
 fn alpha_at(i: usize) -> f64 {
@@ -157,8 +165,8 @@ impl Target {
         (across / along.hypot(across)).powi(2)
     }
 
-    /// The squared relative L2 error of a lobe with the energy of the target.
-    fn error(&self, [a, b, d, e]: Elements) -> f64 {
+    /// The squared relative L2 error of a lobe with nearly the energy of the target, and the share of it.
+    fn error(&self, [a, b, d, e]: Elements) -> (f64, f64) {
         let (alpha, mu) = (self.alpha, self.mu);
         let sine = (1.0 - mu * mu).max(0.0).sqrt();
         // Rows 1 and 3 along x and z.
@@ -169,16 +177,20 @@ impl Target {
         let (up, along) = (a * mu + alpha * b * sine, alpha * (e * sine + d * mu));
         let above = 0.5 * (1.0 + up / up.hypot(along));
         let factor = self.albedo * determinant / (PI * above);
-        let mut sum = 0.0;
+        // Integrals of the lobe's square, and of its product with the target.
+        let (mut own, mut common) = (0.0, 0.0);
         for node in &self.nodes {
             let [x, y, z] = node.outgoing;
             let height = third[0] * x + third[1] * z;
             let side = first[0] * x + first[1] * z;
             let squared = side * side + y * y + height * height;
-            let gap = factor * height.max(0.0) / (squared * squared) - node.value;
-            sum += node.weight * gap * gap;
+            let value = factor * height.max(0.0) / (squared * squared);
+            own += node.weight * value * value;
+            common += node.weight * value * node.value;
         }
-        sum / self.square
+        let share = (common / own.max(f64::MIN_POSITIVE)).clamp(1.0 - MOST_LET_GO, 1.0);
+        let error = (share * (share * own - 2.0 * common) + self.square) / self.square;
+        (error, share)
     }
 
     /// At normal incidence, where the matrix is diagonal with two equal elements.
@@ -225,7 +237,7 @@ impl Target {
     /// The error of the nearest elements in range, and their squared distance.
     fn penalised(&self, elements: Elements) -> f64 {
         let (clamped, excess) = clamped(elements);
-        self.error(clamped) + excess + SKEW * self.squared_skew(clamped)
+        self.error(clamped).0 + excess + SKEW * self.squared_skew(clamped)
     }
 }
 

@@ -19,13 +19,14 @@ use crate::num::{Single, Vector3};
 /// # Energy
 ///
 /// ρ is the share of the light that is reflected: ρ = F(1) n_A + (F(0) − F(1)) f_A with the table's albedos
-/// n_A for F = 1 and f_A for F = (1 − cosθ_h)⁵ [Xia et al. 2023, Eq. 4]. For [`Schlick`](crate::Schlick) this
-/// is exact, and for [`NoFresnel`](crate::NoFresnel) it is n_A. A dielectric or a conductor is taken as
-/// Schlick's factor with its reflectance at normal and at grazing incidence.
+/// n_A for F = 1 and f_A for F = (1 − cosθ_h)⁵ [Xia et al. 2023, Eq. 4], which for [`Schlick`](crate::Schlick)
+/// is the whole Fresnel factor. For [`NoFresnel`](crate::NoFresnel) it is n_A. A dielectric or a conductor is taken
+/// as Schlick's factor with its reflectance at normal and at grazing incidence.
 ///
 /// Part of a cosine lies below the horizon, where no surface reflects. H ≥ ½ is the share above, (1 + c)/2,
 /// where c is the cosine of the angle between the third axis and Mᵀn. The source lets the rest go. The
-/// division by H keeps the energy for F = 1 within 1 % of that of GGX.
+/// division by H keeps the energy for F = 1 within 1 % of that of GGX. Where less than GGX's is nearer to it, the
+/// albedos are up to ¼ % lower: at normal incidence and α = 0.1 the relative L2 error is then 0.0033 and not 0.0047.
 ///
 /// # Error
 ///

@@ -20,7 +20,10 @@ const ALBEDOS: usize = 2;
 #[rustfmt::skip]
 const BYTES: &[u8; 2 * KNOTS * KNOTS * (MATRIX_ELEMENTS + ALBEDOS)] = include_bytes!("ltc.bin");
 
-static MATRICES: [[u16; MATRIX_ELEMENTS]; KNOTS * KNOTS] = knots_from(0);
+/// The counts of A, B, D and E at each knot.
+pub(crate) type Matrices = [[u16; MATRIX_ELEMENTS]; KNOTS * KNOTS];
+
+pub(crate) static MATRICES: Matrices = knots_from(0);
 static ALBEDO_PAIRS: [[u16; ALBEDOS]; KNOTS * KNOTS] = knots_from(MATRIX_ELEMENTS * KNOTS * KNOTS);
 
 /// The knots of the part that starts at the element `start`.
@@ -38,14 +41,20 @@ const fn knots_from<const K: usize>(start: usize) -> [[u16; K]; KNOTS * KNOTS] {
 /// The elements A, B, D and E, interpolated linearly at √α = `root` and √(1 − μ) = `incidence`.
 #[inline]
 pub(crate) fn matrix(root: f64, incidence: f64) -> [f64; MATRIX_ELEMENTS] {
-    let mut elements = interpolated(&MATRICES, knot_and_rest(root), knot_and_rest(incidence));
+    matrix_of(&MATRICES, root, incidence)
+}
+
+/// As [`matrix`], of these knots.
+#[inline(always)]
+pub(crate) fn matrix_of(knots: &Matrices, root: f64, incidence: f64) -> [f64; MATRIX_ELEMENTS] {
+    let mut elements = interpolated(knots, knot_and_rest(root), knot_and_rest(incidence));
     for (element, scale) in elements.iter_mut().zip(MATRIX_SCALES) {
         *element *= scale;
     }
     elements
 }
 
-/// The albedos n_A and f_A, interpolated linearly at √α = `root` and tan(θ/2) + tan(δ/2) = 2·`incidence`.
+/// The albedos n_A and f_A, less what the fit gives away, interpolated linearly at √α = `root` and tan(θ/2) + tan(δ/2) = 2·`incidence`.
 #[inline]
 pub(crate) fn albedos(root: f64, incidence: f64) -> [f64; ALBEDOS] {
     interpolated(&ALBEDO_PAIRS, knot_and_rest(root), knot_and_rest(incidence))
