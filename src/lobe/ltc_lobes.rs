@@ -131,14 +131,17 @@ impl<N: Single> LtcLobes<N> {
     /// M⁻¹w is off by e, (a − e)² ≥ (1 − η)a² − e²/η for any η in (0, 1).
     #[inline(always)]
     pub fn is_fainter(&self, flux: N, way: Vector3<N>, length_squared: N, least: N) -> N::Mask {
+        let [x, y, z] = [self.first, self.second(), self.third].map(
+            #[inline(always)]
+            |row| row.near_dot(way),
+        );
+        let image = Vector3::new(x, y, z);
         let length = length_squared.sqrt();
-        let (x, y) = (self.first.dot(way), self.second().dot(way));
-        let height = self.third.dot(way);
         let error = self.image_error * length;
-        let squared = x * x + y * y + height * height - error * error;
+        let squared = (-error).times_plus(error, image.near_dot(image));
         let factor = flux * self.amplitude + LEAST_FACTOR;
         let least_product = (flux + 1.0) * (flux + 1.0) * LEAST;
-        let product = (height + error) * length * factor + least_product;
+        let product = ((z + error) * length).times_plus(factor, least_product);
         let is_in_range = least.gt(least.splat(LEAST));
         // Overflows only above all that is compared.
         let scaled = squared * (least * LEFT_OF_FOURTH_POWER) * squared.abs();

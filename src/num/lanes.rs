@@ -323,6 +323,11 @@ impl<S: Simd> Single for F32Lanes<S> {
     }
 
     #[inline(always)]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        Self(self.0.mul_add(factor.0, addend.0))
+    }
+
+    #[inline(always)]
     fn load(self, lanes: &[f32]) -> Self {
         Self(S::f32s::from_slice(self.0.token(), &lanes[..S::f32s::LEN]))
     }

@@ -129,6 +129,10 @@ pub trait Single: Real<Element = f32> {
         function: impl FnMut(Quad<f32>, bool) -> [Quad<f32>; 2],
     ) -> [Quad<Self>; 2];
 
+    /// self · factor + addend, rounded once where the processor fuses them, and else twice: for tests that leave room
+    /// for either, not for results.
+    fn times_plus(self, factor: Self, addend: Self) -> Self;
+
     /// 1 − self
     #[inline(always)]
     fn one_minus(self) -> Self {

@@ -95,6 +95,11 @@ impl Single for f32 {
     }
 
     #[inline(always)]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
+
+    #[inline(always)]
     fn load(self, lanes: &[Self]) -> Self {
         lanes[0]
     }

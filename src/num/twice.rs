@@ -163,6 +163,14 @@ impl<N: Single> Single for Twice<N> {
     }
 
     #[inline(always)]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        Self(
+            self.0.times_plus(factor.0, addend.0),
+            self.1.times_plus(factor.1, addend.1),
+        )
+    }
+
+    #[inline(always)]
     fn load(self, lanes: &[f32]) -> Self {
         Self(self.0.load(lanes), self.1.load(&lanes[N::LANES..]))
     }

@@ -123,6 +123,13 @@ impl<D: Double> Vector3<D> {
 }
 
 impl<N: Single> Vector3<N> {
+    /// The dot product, as [`Single::times_plus`] rounds it.
+    #[inline(always)]
+    pub fn near_dot(self, other: Self) -> N {
+        let sum = self.y.times_plus(other.y, self.x * other.x);
+        self.z.times_plus(other.z, sum)
+    }
+
     #[inline(always)]
     pub fn widen(self) -> Vector3<N::Double> {
         Vector3::new(self.x.widen(), self.y.widen(), self.z.widen())

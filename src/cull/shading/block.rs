@@ -175,18 +175,17 @@ pub(super) fn evaluate_block<S: Simd, D: Decision, L: ShadedLight, R: ReceiverLa
     let mut reflected = [0.0; LANES];
     let list = list.with_any_weights();
     let mut quick = QuickTests::default();
+    // A bit for each part that a light has left numbers in.
+    let mut filled = 0_u32;
     for (turn, light) in list.lights.iter().enumerate() {
         let splat = Lights::broadcast(simd, lights, *light);
+        let faintest = settings.decision.faintest(splat.xi);
         estimates.light = *light;
         estimates.accepted = 0;
         for part in 0..parts::<S>() {
             let lobe = lights.lobes.get(*light as usize);
             let points = block.part(simd, part);
-            let faintest = if quick.pay() {
-                settings.decision.faintest(splat.xi)
-            } else {
-                None
-            };
+            let faintest = faintest.filter(|_| quick.pay());
             let arriving = L::arriving(
                 settings.least_distance_squared,
                 faintest,
@@ -215,11 +214,13 @@ pub(super) fn evaluate_block<S: Simd, D: Decision, L: ShadedLight, R: ReceiverLa
                 },
             );
             let Some(evaluated) = decided else {
-                if parts::<S>() > 1 {
+                if parts::<S>() > 1 && filled >> part & 1 != 0 {
                     clear(&mut estimates, &mut reflected, part, S::f32s::LEN);
+                    filled &= !(1 << part);
                 }
                 continue;
             };
+            filled |= 1 << part;
             estimates.accepted |= evaluated.accepted << (part * S::f32s::LEN);
             store(&mut reflected, part, evaluated.reflected);
             estimates.store(part, &evaluated);

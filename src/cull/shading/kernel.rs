@@ -7,7 +7,7 @@ use super::receiver::ReceiverLanes;
 use crate::cull::records::load_lines;
 use crate::light::unit;
 use crate::lobe::{FIRST_NUMBERS, Lobe, LobeNumbers};
-use crate::num::{F32Lanes, Real, Vector3};
+use crate::num::{F32Lanes, Real, Single, Vector3};
 
 /// What all evaluations of an estimator share.
 #[derive(Clone, Copy, Debug)]
@@ -192,10 +192,11 @@ fn arriving<'a, S: Simd, L: Lobe + 'a>(
     let length_squared = way.length_squared();
     let mut may_be_lit = !points.normal.dot(way).is_positive();
     if let Some(normal) = L::horizon_in_lanes(&lights.numbers) {
-        let height = normal.dot(way);
-        let margin = length_squared * DARK_SINE_SQUARED + LEAST_DARK_SQUARE;
+        let height = normal.near_dot(way);
+        let least = length_squared.splat(-LEAST_DARK_SQUARE);
+        let least = length_squared.times_plus(least.splat(-DARK_SINE_SQUARED), least);
         // False for NaN, which nothing accepts.
-        may_be_lit &= (height * height.abs()).gt(-margin);
+        may_be_lit &= (height * height.abs()).gt(least);
     }
     if !may_be_lit.any_true() {
         return None;
