@@ -34,7 +34,7 @@ use crate::num::{Single, Vector3};
 /// is below 6 % up to 45° and 10 % at 60°, and grows to a half at grazing incidence. For F0 = 0.04 it is up to
 /// 18 % at 45° and 43 % at 60°. The bound follows the lobe, so roulette is unbiased for the picture that these
 /// lobes make. That picture differs from GGX's, in linear values up to 1, by a root mean square of 0.005 at most
-/// for a plane below one light (α = 0.3, seen from 45°), and by 0.005 to 0.015 where a metal lights metals, which
+/// for a plane below one light (α = 0.3, seen from 45°), and by 0.005 to 0.016 where a metal lights metals, which
 /// is more than the 0.002 to 0.006 of the source. `cargo run --release --example report -- --study ltsd` makes
 /// the map, and compares pictures and times.
 ///
