@@ -188,7 +188,12 @@ impl<G: MaskingShadowing> LobeFamily for GgxFamily<G> {
         };
         members.majorant::<G>(
             #[inline(always)]
-            |[least_cosine, _]| ranges.fresnel.value(least_cosine),
+            |half_vectors| Majorant {
+                greatest: ranges.fresnel.value(half_vectors.low_half_angle_cosine()),
+                typical: ranges
+                    .fresnel
+                    .value(half_vectors.typical_half_angle_cosine()),
+            },
             #[inline(always)]
             |half_vectors| {
                 let [least, most] = ranges.roughness;

@@ -100,10 +100,12 @@ impl LobeFamily for PhongFamily {
             exponent: albedo.zero(),
             albedo,
         };
+        let axes = self.axes.splat(albedo);
         let [least, most] = self.exponents;
         lobes.majorant_of(
             &self.normals.splat(albedo),
-            &self.axes.splat(albedo),
+            cap.distances(&axes),
+            cap.spread(&axes),
             #[inline(always)]
             |versine| {
                 let worst = N::per_lane(
