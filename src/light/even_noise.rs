@@ -92,6 +92,9 @@ impl EvenNoise {
     /// The scale of δ for a tile of this `radiance`, in the range.
     ///
     /// The least one for zero and for negative numbers, the greatest for infinity, and 1 for NaN.
+    ///
+    /// Of a tile that has shown nothing in many frames, as one that faces away from the lights, give NaN: with the least
+    /// scale it would have the longest lists of all, for nothing.
     #[must_use]
     pub fn delta_scale(&self, radiance: f32) -> f32 {
         if radiance.is_nan() {

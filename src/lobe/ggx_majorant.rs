@@ -159,8 +159,8 @@ impl<N: Single> GgxMembers<N> {
         )
     }
 
-    /// The majorant of an isotropic D for the least squared sine s². `alpha_squared` gives the α² that makes D
-    /// greatest there, and a typical one.
+    /// The majorant of an isotropic D for the least squared sine s², with the α² that makes D greatest there, and a
+    /// typical one.
     #[inline(always)]
     pub fn ndf(
         &self,

@@ -1,74 +1,74 @@
 //! A δ for each tile, so that noise is even to the eye.
 
-use rayon::prelude::*;
-use stochastic_light_culling::{EvenNoise, glam::Vec3};
+use stochastic_light_culling::EvenNoise;
 
-use crate::frame::{Frame, Subregion, Tiles};
+use crate::frame::{Subregion, Tiles};
 
-/// One pixel in so many of a tile is looked at, which is as good: pixels of a tile share their lights. Coprime to the sizes
-/// of tiles, so that columns are met alike.
-const STRIDE: usize = 11;
-
-/// δ of each depth interval of each tile over that of the frame.
-pub struct DeltaScales {
+/// What the depth intervals of tiles showed, in all frames that have been added.
+///
+/// A tile has the same place in all subregions, and sees nearly the same there. So subregions share their sums, which are
+/// of many more pixels, and of all lights.
+#[derive(Clone, Debug)]
+pub struct Shown {
     columns: u32,
     intervals: u32,
-    scales: Vec<f32>,
+    /// The radiance of all pixels, and how many there are.
+    sums: Vec<[f64; 2]>,
 }
 
-impl DeltaScales {
-    /// By what tiles show in a `picture` with random numbers of another seed, on which those of this frame do not depend.
-    ///
-    /// A tile has the same place in all subregions, and sees nearly the same there. So they share a scale, which is known
-    /// better: of many more pixels, and of all lights.
-    pub fn new(frame: &Frame, tiles: &Tiles, picture: &[Vec3]) -> Self {
+impl Shown {
+    /// Of no frame.
+    pub fn nothing(tiles: &Tiles) -> Self {
         let subregions = tiles.subregions();
         let most = |of: fn(&Subregion) -> u32| subregions.iter().map(of).max().unwrap_or(0);
         let columns = most(|subregion| subregion.grid.size()[0]);
         let rows = most(|subregion| subregion.grid.size()[1]);
         let intervals = most(|subregion| subregion.depths.intervals());
-        let slot = |[x, y]: [u32; 2], interval| ((y * columns + x) * intervals + interval) as usize;
-        let of_subregion = |(index, Subregion { grid, depths }): (usize, &Subregion)| {
-            let mut sums = vec![(0.0, 0.0); (columns * rows * intervals) as usize];
-            for tile in grid.tiles() {
-                for pixel in grid.pixels(tile).pixels().step_by(STRIDE) {
-                    let pixel = frame.interleave.join_pixel(index as u32, pixel);
-                    let depth = frame.surfaces.at(pixel).depth;
-                    if let Some(interval) = depths.interval_of(tile, depth) {
-                        let (sum, count) = &mut sums[slot(tile, interval)];
-                        *sum += picture[frame.surfaces.index(pixel)].element_sum() / 3.0;
-                        *count += 1.0;
-                    }
-                }
-            }
-            sums
-        };
-        let add = |mut all: Vec<(f32, f32)>, more: Vec<(f32, f32)>| {
-            for ((sum, count), (more, others)) in all.iter_mut().zip(more) {
-                *sum += more;
-                *count += others;
-            }
-            all
-        };
-        let of_subregions = subregions.par_iter().enumerate().map(of_subregion);
-        let sums = of_subregions.reduce_with(add).unwrap_or_default();
-        let (all, count) = sums.iter().fold((0.0, 0.0), |(all, of_all), (sum, count)| {
-            (all + sum, of_all + count)
-        });
-        // A black picture tells nothing, and a tile without pixels has the NaN of 0/0.
-        let even = EvenNoise::new(all / count);
-        let scale = |(sum, count): (f32, f32)| {
-            even.as_ref()
-                .map_or(1.0, |even| even.delta_scale(sum / count))
-        };
         Self {
             columns,
             intervals,
-            scales: sums.into_iter().map(scale).collect(),
+            sums: vec![[0.0; 2]; (columns * rows * intervals) as usize],
         }
     }
 
-    pub fn of(&self, [x, y]: [u32; 2], interval: u32) -> f32 {
-        self.scales[((y * self.columns + x) * self.intervals + interval) as usize]
+    /// The place of an interval of a tile among all of them.
+    pub fn slot(&self, [x, y]: [u32; 2], interval: u32) -> usize {
+        ((y * self.columns + x) * self.intervals + interval) as usize
+    }
+
+    /// How many places there are.
+    pub fn slots(&self) -> usize {
+        self.sums.len()
+    }
+
+    /// Adds `pixels` that show `radiance` together.
+    pub fn add(&mut self, slot: usize, radiance: f64, pixels: f64) {
+        let [sum, count] = &mut self.sums[slot];
+        *sum += radiance;
+        *count += pixels;
+    }
+
+    /// Adds other frames of the same tiles.
+    pub fn add_all(&mut self, other: &Self) {
+        for (slot, [radiance, pixels]) in other.sums.iter().enumerate() {
+            self.add(slot, *radiance, *pixels);
+        }
+    }
+
+    /// δ of each slot over that of the frame. Random numbers of that frame must be of another seed than those of the frames
+    /// here.
+    pub fn delta_scales(&self) -> Vec<f32> {
+        let add =
+            |[sum, pixels]: [f64; 2], [more, others]: &[f64; 2]| [sum + more, pixels + others];
+        let mean = |[radiance, pixels]: [f64; 2]| (radiance / pixels) as f32;
+        let all = self.sums.iter().fold([0.0; 2], add);
+        // Black frames tell nothing.
+        let even = EvenNoise::new(mean(all));
+        let scale = |sums: &[f64; 2]| match &even {
+            // Where nothing is seen yet, more lights would be for nothing.
+            Ok(even) if sums[0] > 0.0 => even.delta_scale(mean(*sums)),
+            _ => 1.0,
+        };
+        self.sums.iter().map(scale).collect()
     }
 }

@@ -7,9 +7,8 @@ use stochastic_light_culling::{
     ShadingBatch, Tight, TileProbability, TileReceivers, WeightedLists, glam::Vec3,
 };
 
-use super::even::DeltaScales;
 use super::shade::{Lights, shade};
-use super::{Division, Palette, Receiving, Reflected, Scenery};
+use super::{Division, Palette, Receiving, Reflected, Scenery, Shown};
 use crate::frame::{GlossyLight, Subregion, Tiles, timed};
 
 /// What the probability of a light depends on, besides its radiance.
@@ -77,6 +76,7 @@ pub(super) fn light<R: Receiving, P: Palette>(
         .map(|_| listing())
         .collect::<Result<Vec<_>, _>>()?;
 
+    let mut image = Reflected::black(scenery.receivers.len(), division.tiles);
     // Each step is taken twice: the first time makes room, and the second is like a later frame.
     let (build_ms, cull_ms) = match (roulettes.known, roulettes.decided) {
         (Known::Nothing, Decided::ByPixel) => {
@@ -107,6 +107,7 @@ pub(super) fn light<R: Receiving, P: Palette>(
                 &own,
                 &mut listings,
                 family,
+                &mut image.shown,
             )?
         }
         (Known::Receivers, _) => list(
@@ -116,10 +117,10 @@ pub(super) fn light<R: Receiving, P: Palette>(
             &own,
             &mut listings,
             R::family,
+            &mut image.shown,
         )?,
     };
 
-    let mut image = Reflected::black(scenery.receivers.len());
     let tiles = division.tiles;
     image.shade_ms = shade_by(scenery, roulettes, tiles, &own, &listings, &mut image)?;
     image.build_ms = lights_ms + build_ms;
@@ -167,13 +168,19 @@ pub(super) fn lights_to_accept<R: Receiving, P: Palette>(
     scenery: &Scenery<R, P>,
     division: Division,
 ) -> Result<Vec<LightLists>, Error> {
-    let frame = scenery.frame;
+    let (frame, layout) = (scenery.frame, Shown::nothing(division.tiles));
     let subregions = division.tiles.subregions().par_iter().enumerate();
     let lists = subregions.map(|(i, subregion)| {
         let own = own_lights(scenery, i as u32);
         let intervals = subregion.depths.intervals();
         let mut tiles = TileReceivers::new(&subregion.grid, division.parts, intervals)?;
-        fill(scenery, (i as u32, subregion), &mut tiles, R::family, None);
+        fill(
+            scenery,
+            (i as u32, subregion),
+            &mut tiles,
+            R::family,
+            (&layout, None),
+        );
         let mut lists = LightLists::new();
         ReceiverCuller::new(&frame.roulette)
             .with_least_distance_squared(frame.least_distance_squared)?
@@ -192,6 +199,7 @@ fn list<R: Receiving, P: Palette, F: LobeFamily>(
     own: &[Own],
     listings: &mut [Listing],
     family: impl Fn(&R) -> F + Sync,
+    shown: &mut Shown,
 ) -> Result<(f64, f64), Error> {
     let subregions = division.tiles.subregions();
     let empty = |subregion: &Subregion| {
@@ -206,14 +214,19 @@ fn list<R: Receiving, P: Palette, F: LobeFamily>(
         .map(empty)
         .collect::<Result<Vec<_>, _>>()?;
     let ((), build_ms) = timed(|| {
-        let scales = scenery
-            .before
-            .map(|picture| DeltaScales::new(scenery.frame, division.tiles, picture));
+        let scales = scenery.before.map(Shown::delta_scales);
         let tiles = tiles.par_iter_mut().zip(subregions).enumerate();
-        tiles.for_each(|(i, (tiles, subregion))| {
+        let layout = &*shown;
+        let counts = tiles.map(|(i, (tiles, subregion))| {
             let place = (i as u32, subregion);
-            fill(scenery, place, tiles, &family, scales.as_ref());
+            fill(scenery, place, tiles, &family, (layout, scales.as_deref()))
         });
+        let counts: Vec<Vec<u32>> = counts.collect();
+        for counts in counts {
+            for (slot, count) in counts.into_iter().enumerate() {
+                shown.add(slot, 0.0, count.into());
+            }
+        }
     });
     let mut cull = || {
         let listings = listings.par_iter_mut().zip(&tiles).zip(own);
@@ -239,13 +252,15 @@ fn list<R: Receiving, P: Palette, F: LobeFamily>(
 }
 
 /// Collects the receivers of the tiles of a subregion, with a δ for each depth interval of each tile, if there are `scales`.
+/// Returns how many there are in each slot.
 fn fill<R: Receiving, P: Palette, F: LobeFamily>(
     scenery: &Scenery<R, P>,
     (index, subregion): (u32, &Subregion),
     tiles: &mut TileReceivers<F>,
     family: impl Fn(&R) -> F,
-    scales: Option<&DeltaScales>,
-) {
+    (layout, scales): (&Shown, Option<&[f32]>),
+) -> Vec<u32> {
+    let mut counts = vec![0; layout.slots()];
     let (frame, parts) = (scenery.frame, tiles.parts_grid());
     let parts_in_tile = subregion.grid.tile_size() / parts.tile_size();
     let [width, height] = subregion.grid.image_size();
@@ -258,6 +273,7 @@ fn fill<R: Receiving, P: Palette, F: LobeFamily>(
             let depth = frame.surfaces.at(pixel).depth;
             let interval = subregion.depths.interval_of(tile, depth)?;
             let receiver = scenery.receivers[frame.surfaces.index(pixel)].as_ref()?;
+            counts[layout.slot(tile, interval)] += 1;
             Some((interval, receiver.position, family(&receiver.lobe)))
         })
         .collect();
@@ -269,10 +285,14 @@ fn fill<R: Receiving, P: Palette, F: LobeFamily>(
             (own == interval).then_some((position, family))
         }))?;
         match scales {
-            Some(scales) => cluster.with_delta_scale(scales.of(tile, interval)).ok(),
+            Some(scales) => {
+                let scale = scales[layout.slot(tile, interval)];
+                cluster.with_delta_scale(scale).ok()
+            }
             None => Some(cluster),
         }
     });
+    counts
 }
 
 fn own_lights<R, P>(scenery: &Scenery<R, P>, subregion: u32) -> Own {

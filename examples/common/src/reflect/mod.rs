@@ -7,6 +7,7 @@ mod palette;
 mod receivers;
 mod shade;
 
+pub use even::Shown;
 pub use lists::{Decided, Known, Roulettes};
 pub use palette::{Palette, Sums, White};
 pub use receivers::{Receiving, receivers_of};
@@ -26,6 +27,8 @@ pub struct Reflected {
     /// The lights in the list of each pixel, and those of them that add something.
     pub evaluated: Vec<u32>,
     pub contributing: Vec<u32>,
+    /// What tiles show. Nothing where lists are by bounds.
+    pub shown: Shown,
 }
 
 impl Reflected {
@@ -34,7 +37,7 @@ impl Reflected {
     }
 
     /// An image of `count` pixels without light.
-    fn black(count: usize) -> Self {
+    fn black(count: usize, tiles: &Tiles) -> Self {
         Self {
             build_ms: 0.0,
             cull_ms: 0.0,
@@ -42,6 +45,7 @@ impl Reflected {
             radiance: vec![Vec3::ZERO; count],
             evaluated: vec![0; count],
             contributing: vec![0; count],
+            shown: Shown::nothing(tiles),
         }
     }
 }
@@ -54,8 +58,8 @@ pub struct Scenery<'a, R, P> {
     /// For each pixel, none for sky.
     pub receivers: &'a [Option<Receiver<R>>],
     pub palette: P,
-    /// A picture with random numbers of another seed, if tiles have a δ in proportion to what they show.
-    pub before: Option<&'a [Vec3]>,
+    /// What tiles showed with random numbers of another seed, if they have a δ in proportion to it.
+    pub before: Option<&'a Shown>,
 }
 
 /// What to cull by.

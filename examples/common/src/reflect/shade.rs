@@ -7,7 +7,7 @@ use stochastic_light_culling::{
 };
 
 use super::palette::{Palette, Sums};
-use super::{Receiving, Reflected, Scenery};
+use super::{Receiving, Reflected, Scenery, Shown};
 use crate::frame::{Subregion, Tiles};
 
 /// The lights of a subregion, and their tints.
@@ -16,6 +16,8 @@ pub type Lights<'a> = (&'a ShadingBatch<GgxLobe<Schlick>>, &'a [Vec3]);
 /// A pixel of the image, and what it shows.
 struct Pixel {
     place: usize,
+    /// Of its tile and depth interval, in [`Shown`].
+    slot: usize,
     radiance: Vec3,
     evaluated: u32,
     contributing: u32,
@@ -39,12 +41,14 @@ pub fn shade<'l, R: Receiving, P: Palette, D: Decision + Sync>(
     let rows: Vec<(usize, u32)> = (0..subregions.len())
         .flat_map(|i| (0..subregions[i].grid.size()[1]).map(move |y| (i, y)))
         .collect();
+    let shown = &image.shown;
     let row = |&(i, y): &(usize, u32)| {
         let row = Row {
             scenery,
             subregion: (i, &subregions[i]),
             y,
             lights: lights[i],
+            shown,
         };
         let list_of = |tile, interval| list_of(i, tile, interval);
         let tile_size = subregions[i].grid.tile_size() as usize;
@@ -57,6 +61,8 @@ pub fn shade<'l, R: Receiving, P: Palette, D: Decision + Sync>(
     let rows: Vec<Vec<Pixel>> = rows.par_iter().map(row).collect();
     for pixel in rows.into_iter().flatten() {
         image.radiance[pixel.place] = pixel.radiance;
+        let radiance = pixel.radiance.element_sum() / 3.0;
+        image.shown.add(pixel.slot, radiance.into(), 0.0);
         image.evaluated[pixel.place] = pixel.evaluated;
         image.contributing[pixel.place] = pixel.contributing;
     }
@@ -85,6 +91,7 @@ struct Row<'a, R, P> {
     subregion: (usize, &'a Subregion),
     y: u32,
     lights: Lights<'a>,
+    shown: &'a Shown,
 }
 
 impl<R: Receiving, P: Palette> Row<'_, R, P> {
@@ -126,6 +133,7 @@ impl<R: Receiving, P: Palette> Row<'_, R, P> {
                 continue;
             }
             self.pixels(tile, interval, &mut places);
+            let slot = self.shown.slot(tile, interval);
             for places in places.chunks(PointBlock::LEN) {
                 let receivers = places
                     .iter()
@@ -151,6 +159,7 @@ impl<R: Receiving, P: Palette> Row<'_, R, P> {
                 );
                 shaded.extend(places.iter().enumerate().map(|(i, place)| Pixel {
                     place: *place,
+                    slot,
                     radiance: sums.map(|sums| sums[i]).into(),
                     evaluated: list.length() as u32,
                     contributing: contributing[i],
@@ -176,10 +185,12 @@ impl<R: Receiving, P: Palette> Row<'_, R, P> {
                 continue;
             }
             self.pixels(tile, interval, &mut places);
+            let slot = self.shown.slot(tile, interval);
             for place in &places {
                 lists.push(list);
                 shaded.push(Pixel {
                     place: *place,
+                    slot,
                     radiance: Vec3::ZERO,
                     evaluated: list.length() as u32,
                     contributing: 0,

@@ -1,7 +1,7 @@
 //! Error against time for receivers of all materials, by each way to light them.
 
 use common::frame::redraw;
-use common::reflect::Receiving;
+use common::reflect::{Receiving, Shown};
 use common::sampling::Profiled;
 use rayon::prelude::*;
 use stochastic_light_culling::{
@@ -14,7 +14,7 @@ use super::even;
 use super::gain;
 use super::material::{Material, Visitor};
 use super::score::{Errors, Expected, Measures};
-use super::way::{Setting, Stage, Way};
+use super::way::{Picture, Setting, Stage, Way};
 use crate::figure::{Axis, Figure, Panel, Point, Series};
 use crate::sheet::{Cell, Sheet};
 use crate::statistics::Mean;
@@ -23,9 +23,9 @@ use crate::subject::{Gloss, Subject};
 /// A curve ends with the first picture that takes longer.
 const SLOWEST_MS: f64 = 300.0;
 /// How long pictures of one setting may take together, if there are a few.
-const ENOUGH_MS: f64 = 150.0;
-/// How many pictures a way draws in advance that has δ from the picture before.
-const PICTURES_BEFORE: u32 = 2;
+const ENOUGH_MS: f64 = 500.0;
+/// How many pictures a way draws in advance that has δ from those before.
+const PICTURES_BEFORE: u32 = 4;
 
 /// All ways to light receivers of a material.
 pub struct Measured<'a> {
@@ -106,7 +106,7 @@ impl Visitor for Measuring<'_> {
             let stage = &self.stages[0];
             stage
                 .light((Way::ALL_LIGHTS, all), receivers, lights, Seed(0), None)
-                .1
+                .ms
         });
         (curves, times.fold(f64::INFINITY, f64::min))
     }
@@ -125,7 +125,7 @@ impl Measuring<'_> {
         let is_even = way.is_even();
         let in_advance = if is_even { PICTURES_BEFORE } else { 0 };
         // Of another seed each. The first has one δ.
-        let mut before: Option<Vec<Vec3>> = None;
+        let mut before: Option<Shown> = None;
         for repetition in 0..in_advance + most {
             // Of slow ways there are fewer pictures, and wider intervals.
             let is_enough = times.len() >= 4 && times.iter().sum::<f64>() > ENOUGH_MS;
@@ -135,13 +135,19 @@ impl Measuring<'_> {
             let seed = Seed(self.subject.seed_of(repetition));
             let mut lights = stage.lights.clone();
             redraw(&mut lights, &stage.interleave, seed, 0);
-            let picture = before.as_deref();
-            let (radiance, ms) = stage.light((way, setting), receivers, &lights, seed, picture);
+            let Picture {
+                radiance,
+                ms,
+                shown,
+            } = stage.light((way, setting), receivers, &lights, seed, before.as_ref());
             if repetition >= in_advance {
                 errors.add(&radiance);
                 times.push(ms);
             }
-            before = is_even.then_some(radiance);
+            match (&mut before, shown) {
+                (Some(before), Some(shown)) => before.add_all(&shown),
+                (_, shown) => before = shown.filter(|_| is_even),
+            }
         }
         Step {
             setting,

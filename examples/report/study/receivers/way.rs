@@ -1,7 +1,7 @@
 //! Ways to light receivers.
 
 use common::frame::{Frame, GlossyLight, Reference, Slicing, Tiles, timed};
-use common::reflect::{Decided, Division, Known, Receiving, Roulettes, Scenery, White};
+use common::reflect::{Decided, Division, Known, Receiving, Roulettes, Scenery, Shown, White};
 use common::sampling::{LightTrees, Profiled, shade_by_tree, shade_resampled};
 use stochastic_light_culling::{Interleave, Receiver, Seed, TileProbability, glam::Vec3};
 
@@ -154,7 +154,7 @@ impl Way {
 
     /// From coarse to fine, where receivers reflect the radiance `mean` in the mean.
     pub fn settings(self, mean: f64, is_quick: bool) -> Vec<Setting> {
-        let (steps, fall) = if is_quick { (4, 1.0) } else { (6, 0.75) };
+        let (steps, fall) = if is_quick { (4, 1.0) } else { (7, 0.75) };
         let deltas = |first: f64, steps: i32, fall: f64| -> Vec<Setting> {
             let step = |i: i32| first * 10_f64.powf(-fall * f64::from(i));
             (0..steps).map(|i| Setting::Delta(step(i) as f32)).collect()
@@ -167,6 +167,27 @@ impl Way {
             },
             Self::Tree { .. } => deltas(10.0 * mean, 3, 1.0),
             Self::Resampled { .. } => samples,
+        }
+    }
+}
+
+/// A frame by one of the ways.
+pub struct Picture {
+    /// Of all pixels.
+    pub radiance: Vec<Vec3>,
+    pub ms: f64,
+    /// If there are tiles.
+    pub shown: Option<Shown>,
+}
+
+impl Picture {
+    /// Without tiles.
+    fn timed(light: impl FnOnce() -> Vec<Vec3>) -> Self {
+        let (radiance, ms) = timed(light);
+        Self {
+            radiance,
+            ms,
+            shown: None,
         }
     }
 }
@@ -212,16 +233,15 @@ impl<'a> Stage<'a> {
         pixels.into_iter().filter(is_seen).collect()
     }
 
-    /// The radiance of all pixels, and the milliseconds that it takes. A way that needs a picture `before` has one with
-    /// another seed.
+    /// Lights all pixels. A way that needs what tiles showed `before` has that of other seeds.
     pub fn light<R: Receiving + Profiled>(
         &self,
         (way, setting): (Way, Setting),
         receivers: &[Option<Receiver<R>>],
         lights: &[GlossyLight],
         seed: Seed,
-        before: Option<&[Vec3]>,
-    ) -> (Vec<Vec3>, f64) {
+        before: Option<&Shown>,
+    ) -> Picture {
         match (way, setting) {
             (
                 Way::Culled {
@@ -240,17 +260,20 @@ impl<'a> Stage<'a> {
                 };
                 let lit = scenery.light(roulettes, Division { tiles, parts: 1 });
                 let lit = lit.expect("fewer pairs than a u32 counts");
-                let ms = lit.ms();
-                (lit.radiance, ms)
+                Picture {
+                    ms: lit.ms(),
+                    radiance: lit.radiance,
+                    shown: Some(lit.shown),
+                }
             }
-            (Way::Tree { .. }, Setting::Delta(delta)) => timed(|| {
+            (Way::Tree { .. }, Setting::Delta(delta)) => Picture::timed(|| {
                 let frame = self.frame(delta);
                 let trees = LightTrees::new(&frame, lights);
                 shade_by_tree(&frame, lights, &trees, receivers, delta, seed)
             }),
-            (Way::Resampled { .. }, Setting::Samples(samples)) => {
-                timed(|| shade_resampled(&self.frame(1.0), lights, receivers, samples, seed))
-            }
+            (Way::Resampled { .. }, Setting::Samples(samples)) => Picture::timed(|| {
+                shade_resampled(&self.frame(1.0), lights, receivers, samples, seed)
+            }),
             _ => unreachable!("each way has settings of its own"),
         }
     }
