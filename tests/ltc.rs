@@ -213,12 +213,16 @@ fn matrices_that_cannot_be_inverted_are_errors() {
         [1e7, 0.0, 0.0, 1.0],
         [1.0, f32::NAN, 0.0, 1.0],
         [f32::INFINITY, 0.0, 0.0, 1.0],
+        // In single precision little is left of the shortest image of a direction.
+        [1e5, 0.0, 0.0, 1e-2],
+        [0.039, 0.0, 0.0963, 2.79e-5],
     ] {
         assert!(
             matches!(with(matrix, 0.5), Err(Error::Matrix { .. })),
             "{matrix:?}"
         );
     }
+    assert!(with([1e3, 0.0, 0.0, 1e-1], 0.5).is_ok());
     for magnitude in [-0.1, 1.1, f32::NAN] {
         let error = with([1.0, 0.0, 0.0, 1.0], magnitude);
         assert!(matches!(error, Err(Error::Number { .. })), "{magnitude}");

@@ -1,9 +1,13 @@
 //! The inequalities behind the bound of a transformed cosine: each holds, and they are those that the program
-//! chooses.
+//! chooses. What a value in single precision reaches is inside, too.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use proptest::prelude::*;
+use stochastic_light_culling::{Bounded, Direction, Lobe, LtcLobe, Vpl, glam::Vec3};
+use support::generators::{self, cases, unit_vector};
 use support::ltc_inequality::LtcInequality;
+use support::reference::{Brdf, Shape, Vector, ltc_rows, ltc_value};
 
 #[allow(dead_code, reason = "the test takes parts of it")]
 #[path = "../examples/tabulate/ltc.rs"]
@@ -119,5 +123,98 @@ fn rows_are_reproduced() {
             rows[usize::from(TABLE[place])],
             "place {place}"
         );
+    }
+}
+
+/// The directions of a lobe, as M maps others to them, and how far out the isosurface is there.
+struct Search {
+    lobe: LtcLobe,
+    bound: Shape,
+    /// Those of M, times the determinant.
+    columns: [Vector; 3],
+}
+
+impl Search {
+    fn new(lobe: LtcLobe) -> Self {
+        let [first, third] = ltc_rows(&lobe);
+        let second = third.cross(first);
+        Self {
+            lobe,
+            bound: lobe.unit_bound().into(),
+            columns: [second.cross(third), second, first.cross(second)],
+        }
+    }
+
+    fn direction(&self, x: Vector) -> Vector {
+        let [first, second, third] = self.columns;
+        let Vector([x, y, z]) = x;
+        (first * x + second * y + third * z.abs()).unit()
+    }
+
+    /// Below 1 inside the bound; zero below the horizon.
+    fn level(&self, x: Vector) -> f64 {
+        let way = self.direction(x);
+        if way.dot(Vector::from(*self.lobe.normal())) <= 0.0 {
+            return 0.0;
+        }
+        let point = way * ltc_value(&self.lobe, way).sqrt();
+        self.bound.level(Vector([0.0; 3]), point)
+    }
+
+    /// Near where bound and isosurface touch: the best of `starts`, and then by ever smaller steps.
+    fn contact(&self, starts: &[Vector]) -> Vector {
+        let mut best = (Vector([0.0, 0.0, 1.0]), 0.0);
+        let mut size = 0.1;
+        let steps = starts.iter().cycle().take(600);
+        for (i, start) in starts.iter().chain(steps).enumerate() {
+            let x = if i < starts.len() {
+                *start
+            } else {
+                best.0 + *start * size
+            };
+            let level = self.level(x);
+            if level > best.1 {
+                best = (x, level);
+            } else if i >= starts.len() {
+                size *= 0.985;
+            }
+        }
+        best.0
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(1500))]
+
+    /// The value, as it rounds, reaches no point outside the bound.
+    #[test]
+    fn what_counts_as_it_rounds_is_inside(
+        brdf in generators::ltc(),
+        [normal, incoming] in [unit_vector(), unit_vector()],
+        ways in prop::collection::vec(unit_vector(), 100),
+    ) {
+        let [normal, incoming] = [normal, incoming].map(|v| Direction::new(v.to_f32()).unwrap());
+        let Brdf::Ltc { lobe, roughness, .. } = brdf.lit_by(normal, incoming) else {
+            return Ok(());
+        };
+        if lobe.is_empty() || roughness < 1e-4 {
+            return Ok(());
+        }
+        let search = Search::new(lobe);
+        let exact = search.direction(search.contact(&ways));
+        let vpl = Vpl::new(Vec3::ZERO, 1.0, lobe).unwrap();
+        // Neighbours round differently.
+        for (step, aside) in (0..8).flat_map(|step| ways.iter().map(move |way| (step * step, *way))) {
+            let way = (exact + aside * (f64::from(step) * 6e-8)).unit();
+            let rough = f64::from(vpl.radiant_intensity(way.to_f32()));
+            for ulps in -3..=3 {
+                let point = (way * (rough.sqrt() * (1.0 + 6e-8 * f64::from(ulps)))).to_f32();
+                let (direction, squared) = vpl.direction_to(point);
+                if vpl.radiant_intensity(direction) >= squared {
+                    let level = search.bound.level(Vector([0.0; 3]), Vector::from(point));
+                    prop_assert!(level <= 1.0, "{level} of {lobe:?}");
+                }
+            }
+        }
     }
 }

@@ -3,6 +3,7 @@
 use core::f64::consts::FRAC_1_PI;
 
 use super::ltc_lobes::{LtcLobes, image_error};
+use super::ltc_majorant::rounding_of_value;
 use super::{Fresnel, Ggx, Incidence, ltc_table};
 use crate::num::{Double, Real, Single, Vector3, exact_dot};
 
@@ -130,6 +131,20 @@ impl<D: Double> Matrix<D> {
             elements: [m11, m13, m31, m33],
             determinant: m11 * m33 - m13 * m31,
         }
+    }
+
+    /// The most by which rounding moves the image of a direction in the value, over a lower bound of the length of that
+    /// image, for a positive determinant.
+    pub fn rounding(&self) -> D {
+        let [m11, m13, m31, m33] = self.elements;
+        let (first, third) = (m11 * m11 + m13 * m13, m31 * m31 + m33 * m33);
+        let one = m11.splat(1.0);
+        // As the rows are stored, times 1/(m₁₁m₃₃ − m₁₃m₃₁).
+        let over = one / (self.determinant * self.determinant);
+        let moved = rounding_of_value([first * over, over, third * over]) * self.determinant;
+        // Of the greatest singular value the root is an upper bound.
+        let least = (self.determinant / (first + third).sqrt()).min(one);
+        moved / least
     }
 
     /// The product of the lengths of both rows.

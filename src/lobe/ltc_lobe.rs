@@ -92,6 +92,9 @@ pub struct LtcLobe {
     image_error: f32,
 }
 
+/// The most by which rounding may move the image of a direction under a caller's matrix, as a share of its length.
+const MOST_ROUNDING: f64 = 1.0 / 16.0;
+
 impl LtcLobe {
     /// Creates the lobe that resembles the GGX lobe of light that arrives with `incidence`, with
     /// height-correlated masking and shadowing.
@@ -123,7 +126,9 @@ impl LtcLobe {
     ///
     /// [`Error::Number`] if `magnitude` is outside \[0, 1\] or NaN. [`Error::Matrix`] if an element is above
     /// 10⁶ or NaN, or if the determinant m₁₁m₃₃ − m₁₃m₃₁ is not at least 10⁻⁶ and 10⁻⁴ of the product of the
-    /// lengths of both rows.
+    /// lengths of both rows. Also if rounding to single precision may move M⁻¹ω by more than 1/16 of its length, as it
+    /// may if the greatest singular value is 10⁵ times the least, or if the rows are long and nearly parallel: values
+    /// near the peak would be wrong by more than 30 %.
     ///
     /// ```
     /// use stochastic_light_culling::{Direction, Incidence, Lobe, LtcLobe, glam::Vec3};
@@ -149,6 +154,14 @@ impl LtcLobe {
                 quantity: "M⁻¹",
                 element: determinant as f32,
                 valid: "it must be invertible, with elements up to 10⁶; determinant",
+            });
+        }
+        let rounding = matrix.rounding();
+        if rounding > MOST_ROUNDING {
+            return Err(Error::Matrix {
+                quantity: "M⁻¹",
+                element: rounding as f32,
+                valid: "in single precision it must move no image of a direction by more than 1/16 of its length",
             });
         }
         let normal = incidence.normal.into();

@@ -20,6 +20,14 @@ pub(super) fn rounding_of_image<D: Double>(first: D, third: D) -> D {
     (first * third).sqrt() * (CROSS_ROUNDINGS * f64::from(UNIT_ROUNDOFF))
 }
 
+/// How far the image of a direction may be off in the value, that of the direction itself included, for the squared
+/// lengths of all rows.
+#[inline(always)]
+pub(super) fn rounding_of_value<D: Double>([first, second, third]: [D; 3]) -> D {
+    let norm = (first + second + third).sqrt();
+    norm * (IMAGE_ROUNDINGS * f64::from(UNIT_ROUNDOFF)) + rounding_of_image(first, third)
+}
+
 impl<N: Single> LtcLobes<N> {
     /// The rows of M⁻¹, where the first and the third are as they are stored.
     #[inline(always)]
@@ -45,7 +53,7 @@ impl<N: Single> LtcLobes<N> {
             norms: [z.sqrt(), sum.sqrt()],
             least_image: determinant * 2.0 / sum - rounding,
         };
-        let rounding = sum.sqrt() * (IMAGE_ROUNDINGS * f64::from(UNIT_ROUNDOFF)) + rounding;
+        let rounding = rounding_of_value(squares);
         members.majorant_of_images(cap, least_image(&rows, cap) - rounding)
     }
 }

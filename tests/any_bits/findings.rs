@@ -2,8 +2,8 @@
 
 use stochastic_light_culling::{
     BatchBuilder, Bounded, Camera, Cap, Conductor, Culler, DepthInterval, Direction, Ellipsoid,
-    Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, Lobe, LtcLobe, NoFresnel, Paper,
-    Roulette, Sphere, Spheroid, Tight, TileDepths, TileRectangle,
+    Error, Ggx, GgxLobe, Incidence, LambertLobe, LightBatch, LightLists, Lobe, LtcLobe, NoFresnel,
+    Paper, Roulette, Sphere, Spheroid, Tight, TileDepths, TileRectangle,
     glam::{Mat3, Mat4, Vec2, Vec3},
 };
 
@@ -216,8 +216,10 @@ fn rows_of_a_transformed_cosine_are_nearly_parallel() {
         let turn = 0.03 * i as f32;
         let incoming = Direction::new(Vec3::new(turn.cos(), 0.4, turn.sin())).unwrap();
         let incidence = Incidence { normal, incoming };
-        let inverse = [0.039, 0.0, 0.0963, 2.79e-5];
-        let lobe = LtcLobe::with_matrix(inverse, 1.0, incidence).unwrap();
+        // What is left of it would be wrong by many times the shortest image.
+        let refused = LtcLobe::with_matrix([0.039, 0.0, 0.0963, 2.79e-5], 1.0, incidence);
+        assert!(matches!(refused, Err(Error::Matrix { .. })));
+        let lobe = LtcLobe::with_matrix([3.9, 0.0, 9.63, 0.0279], 1.0, incidence).unwrap();
         let most = lobe.maximum_within(&Cap::new(Direction::Y, 0.0).unwrap());
         let value = lobe.value(Vec3::Y);
         assert!(value * 0.999 <= most, "{value} above {most}");

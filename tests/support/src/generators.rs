@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use proptest::prelude::*;
 use stochastic_light_culling::{
-    Direction, Ellipsoid,
+    Direction, Ellipsoid, Incidence, LtcLobe,
     glam::{Mat3, Mat4, Vec3, Vec4},
 };
 
@@ -221,10 +221,13 @@ pub fn sharpness() -> impl Strategy<Value = f32> {
 fn ltc_matrix() -> impl Strategy<Value = [f32; 4]> {
     let length = || log_uniform(0.1, 1e5);
     let between = up_to_one(2e-4).prop_map(|share| 0.5 * std::f64::consts::PI * f64::from(share));
-    (0.0..TAU, between, length(), length()).prop_map(|(angle, between, first, third)| {
+    let any = (0.0..TAU, between, length(), length()).prop_map(|(angle, between, first, third)| {
         let row = |angle: f64, length: f64| [angle.cos(), angle.sin()].map(|x| x * length);
         let ([a, b], [c, d]) = (row(angle, first), row(angle + between, third));
         [a, b, c, d].map(|x| x as f32)
+    });
+    any.prop_filter("it is nearly singular", |elements| {
+        LtcLobe::with_matrix(*elements, 1.0, Incidence::head_on(Direction::Z)).is_ok()
     })
 }
 

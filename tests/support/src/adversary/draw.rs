@@ -4,6 +4,7 @@ use std::f32::consts::PI;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use fastrand::Rng;
+use stochastic_light_culling::{Direction, Incidence, LtcLobe};
 
 use super::{log_uniform, up_to_one};
 use crate::reference::{Fresnel, Masking};
@@ -89,12 +90,17 @@ pub fn exponent(rng: &mut Rng) -> f32 {
     ((16.0 * exponent).round() / 16.0) as f32
 }
 
-/// The elements of a matrix that [`LtcLobe::with_matrix`](stochastic_light_culling::LtcLobe::with_matrix)
-/// accepts: rows over seven decades, at angles down to 2·10⁻⁴ of each other.
+/// The elements of a matrix that [`LtcLobe::with_matrix`] accepts: rows over seven decades, at angles down to 2·10⁻⁴ of
+/// each other.
 pub fn matrix(rng: &mut Rng) -> [f32; 4] {
-    let (angle, between) = (rng.f64() * TAU, up_to_one(rng, 2e-4) * FRAC_PI_2);
-    let [long, short] = [(); 2].map(|()| log_uniform(rng, 0.1, 1e5));
-    let [first, third] = [(angle, long), (angle + between, short)]
-        .map(|(angle, length)| [angle.cos() * length, angle.sin() * length]);
-    [first[0], first[1], third[0], third[1]].map(|x| x as f32)
+    loop {
+        let (angle, between) = (rng.f64() * TAU, up_to_one(rng, 2e-4) * FRAC_PI_2);
+        let [long, short] = [(); 2].map(|()| log_uniform(rng, 0.1, 1e5));
+        let [first, third] = [(angle, long), (angle + between, short)]
+            .map(|(angle, length)| [angle.cos() * length, angle.sin() * length]);
+        let elements = [first[0], first[1], third[0], third[1]].map(|x| x as f32);
+        if LtcLobe::with_matrix(elements, 1.0, Incidence::head_on(Direction::Z)).is_ok() {
+            return elements;
+        }
+    }
 }
