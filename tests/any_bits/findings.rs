@@ -216,7 +216,7 @@ fn rows_of_a_transformed_cosine_are_nearly_parallel() {
         let turn = 0.03 * i as f32;
         let incoming = Direction::new(Vec3::new(turn.cos(), 0.4, turn.sin())).unwrap();
         let incidence = Incidence { normal, incoming };
-        // What is left of it would be wrong by many times the shortest image.
+        // Rounding would exceed its shortest image many times over.
         let refused = LtcLobe::with_matrix([0.039, 0.0, 0.0963, 2.79e-5], 1.0, incidence);
         assert!(matches!(refused, Err(Error::Matrix { .. })));
         let lobe = LtcLobe::with_matrix([3.9, 0.0, 9.63, 0.0279], 1.0, incidence).unwrap();
