@@ -1,10 +1,9 @@
 //! The formulas of [`AnisotropicGgxLobe`](super::AnisotropicGgxLobe), for one lobe in each lane.
 
 use super::anisotropic_ggx::{anisotropic_masking_root, anisotropic_ndf, ndf_of_scaled_sine};
-use super::ggx::masking_root;
 use super::ggx_majorant::GgxMembers;
 use super::{Caps, FIRST_NUMBERS, GgxLobes, LobeNumbers, Majorant, MaskingShadowing};
-use crate::num::{Matrix3, Single, UNIT_ROUNDOFF, Vector3};
+use crate::num::{Matrix3, Single, Vector3};
 
 /// α_x and α_y, and the rotation from world space to the frame of the surface.
 #[inline(always)]
@@ -40,8 +39,7 @@ pub(super) fn anisotropic_value<N: Single, G: MaskingShadowing>(
 
 /// The majorant of [`anisotropic_value`] within a cap.
 ///
-/// The root √(α_x²x² + α_y²y² + z²) is that of an isotropic surface whose roughness is between α_x and α_y. Its square is
-/// the lesser one, and of the difference the share of the rougher axis in x² + y².
+/// The root √(α_x²x² + α_y²y² + z²) is least where each coordinate is.
 #[inline(always)]
 pub(super) fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
     at_any_azimuth: &GgxLobes<N>,
@@ -55,15 +53,11 @@ pub(super) fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
         reflectance,
         #[inline(always)]
         |half_vectors| {
-            // Where α is 1, u is as good as zero.
-            let squares = roughness.map(
+            let factors = roughness.map(
                 #[inline(always)]
-                |alpha| {
-                    let rest = alpha.one_minus() * (alpha + 1.0);
-                    alpha * alpha / rest.max(rest.splat(UNIT_ROUNDOFF))
-                },
+                |alpha| (alpha.one_minus() * (alpha + 1.0)).sqrt() / alpha,
             );
-            let sine = half_vectors.least_scaled_sine(&to_surface_frame, squares);
+            let sine = half_vectors.least_scaled_sine(&to_surface_frame, factors);
             let greatest = ndf_of_scaled_sine(roughness, sine);
             let filtered = roughness.map(
                 #[inline(always)]
@@ -73,28 +67,16 @@ pub(super) fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
             Majorant { greatest, typical }
         },
         #[inline(always)]
-        |outgoing_cosine| {
-            masking_root(
-                least_roughness(roughness, &to_surface_frame, cap),
-                outgoing_cosine,
-            )
+        |_| {
+            let along = |axis: Vector3<N>| cap.least_magnitude(axis);
+            let [x, y] = [
+                to_surface_frame.transpose().x,
+                to_surface_frame.transpose().y,
+            ]
+            .map(along);
+            let least = Vector3::new(x, y, cap.least_cosine(at_any_azimuth.normal));
+            anisotropic_masking_root(roughness, least)
         },
         cap,
     )
-}
-
-/// A lower bound of √(α_x²x² + α_y²y²)/√(x² + y²) for the directions (x, y, z) of a cap.
-#[inline(always)]
-fn least_roughness<N: Single>(
-    [along, across]: [N; 2],
-    to_surface_frame: &Matrix3<N>,
-    cap: &Caps<N>,
-) -> N {
-    let Vector3 { x, y, .. } = *to_surface_frame * cap.axis;
-    let zero = x.zero();
-    let rougher = N::select(along.gt(across), x, y);
-    let length = (x * x + y * y).sqrt();
-    let least = (rougher.abs() - cap.chord).max(zero) / (length + cap.chord);
-    let (less, more) = (along.min(across), along.max(across));
-    (less * less + (more - less) * (more + less) * (least * least)).sqrt()
 }

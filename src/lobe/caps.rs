@@ -18,8 +18,6 @@ use crate::num::{Real, Single, UNIT_ROUNDOFF, Vector3, round_down};
 
 /// Budget for the distance of a ball.
 const DISTANCE_ROUNDINGS: u16 = 4;
-/// Budget for the chord of a difference of two angles, in units of u.
-const DIFFERENCE_ROUNDINGS: f32 = 40.0;
 /// Budget for the chord of a ball, beside that of its distance.
 const BALL_ROUNDINGS: u16 = 6;
 
@@ -126,29 +124,24 @@ impl<N: Single> Caps<N> {
         }
     }
 
+    /// The least ω·n, not negative: zero if some of the cap is below the horizon.
+    #[inline(always)]
+    pub fn least_cosine(&self, normal: Vector3<N>) -> N {
+        (normal.dot(self.axis) - self.chord).max(self.chord.zero())
+    }
+
+    /// The least |ω·a| for a unit vector `axis` = a.
+    #[inline(always)]
+    pub fn least_magnitude(&self, axis: Vector3<N>) -> N {
+        (axis.dot(self.axis).abs() - self.chord).max(self.chord.zero())
+    }
+
     /// The least distance ‖ω − u‖ for u in `axes`, and that of both axes.
     #[inline(always)]
     pub fn distances(&self, axes: &Self) -> [N; 2] {
         let middle = (self.axis - axes.axis).length();
         let least = Real::max(middle - self.spread(axes), middle.zero());
         [least, middle]
-    }
-
-    /// As [`distances`](Self::distances), from one `axis`, and tighter: the least is that of the difference of both
-    /// angles. It does not nest.
-    #[inline(always)]
-    pub fn distances_from(&self, axis: Vector3<N>) -> [N; 2] {
-        let [least, middle] = self.distances(&Self::around(axis));
-        let one = middle.splat(1.0);
-        let [half_chord, half] = [self.chord, middle].map(
-            #[inline(always)]
-            |length| (length * 0.5).min(one),
-        );
-        let cosine = |sine: N| sine.one_minus() * (sine + 1.0);
-        let of_middle = cosine(half) + DIFFERENCE_ROUNDINGS * UNIT_ROUNDOFF;
-        let exact = middle * cosine(half_chord).sqrt() - self.chord * of_middle.sqrt();
-        let exact = exact - DIFFERENCE_ROUNDINGS * UNIT_ROUNDOFF;
-        [exact.max(least), middle]
     }
 
     /// The sum of both chords.

@@ -188,12 +188,7 @@ impl<G: MaskingShadowing> LobeFamily for GgxFamily<G> {
         };
         members.majorant::<G>(
             #[inline(always)]
-            |half_vectors| Majorant {
-                greatest: ranges.fresnel.value(half_vectors.low_half_angle_cosine()),
-                typical: ranges
-                    .fresnel
-                    .value(half_vectors.typical_half_angle_cosine()),
-            },
+            |[least_cosine, _]| ranges.fresnel.value(least_cosine),
             #[inline(always)]
             |half_vectors| {
                 let [least, most] = ranges.roughness;

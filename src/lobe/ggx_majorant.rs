@@ -7,8 +7,8 @@
 //! the family whose chords are zero. Let w be the axis of the cap, c_w its chord, h = i + w and c = c_i + c_w. Then, for
 //! any member and any direction of the cap,
 //!
-//! - the half vector is within c of h, so its length is at least ‖h‖ − c, and cosθ_h is half of that. One lobe takes
-//!   the exact range of cosθ_h (`half_vectors`), since its F may be steep;
+//! - the half vector is within c of h, so its length is between ‖h‖ − c and L = min(‖h‖ + c, 2), and cosθ_h is half of
+//!   that;
 //! - the sine of its angle to the member's normal is at least s = max(0, s₀ − c_n), where s₀ is the least sine of the
 //!   angles between n and the elliptic cone of the unit half vectors (`half_vectors`), since the cross product with a
 //!   unit vector changes by no more than the other vector does;
@@ -30,7 +30,7 @@
 //! # It nests
 //!
 //! Let n′, i′, w′ and their chords be those of a greater pair: c′_n ≥ ‖n′ − n‖ + c_n, and so on. Then
-//! ‖h′ − h‖ ≤ c′ − c. Hence ‖h′‖ − c′ ≤ ‖h‖ − c. The cone of the greater pair holds that of the lesser, so
+//! ‖h′ − h‖ ≤ c′ − c. Hence ‖h′‖ − c′ ≤ ‖h‖ − c and L′ ≥ L. The cone of the greater pair holds that of the lesser, so
 //! s₀′ ≤ s₀ + ‖n′ − n‖, and s′ ≤ s. In the same way m′ ≥ m, and a chord that is clamped to 2 makes s′ zero and m′ one.
 //! D̂ is a maximum over a set that grows with the family, of a function that falls with s; F̂ and the bound of G2 are
 //! monotonic in all of their numbers. So the majorant of the greater pair is at least that of the lesser.
@@ -71,12 +71,12 @@ impl<N: Single> GgxMembers<N> {
         }
     }
 
-    /// The majorant within a cap. `fresnel` gives the majorant of F, `ndf` that of D, and `masking_root` the least root
-    /// of G1(ω_o) for the greatest μ_o.
+    /// The majorant within a cap. `fresnel` gives an upper bound of F between two cosines of the half angle, `ndf`
+    /// the majorant of D, and `masking_root` the least root of G1(ω_o) for the greatest μ_o.
     #[inline(always)]
     pub fn majorant<G: MaskingShadowing>(
         &self,
-        fresnel: impl FnOnce(&HalfVectors<N>) -> Majorant<N>,
+        fresnel: impl Fn([N; 2]) -> N,
         ndf: impl FnOnce(&HalfVectors<N>) -> Majorant<N>,
         masking_root: impl Fn(N) -> N,
         cap: &Caps<N>,
@@ -88,14 +88,14 @@ impl<N: Single> GgxMembers<N> {
             return Majorant::exactly(zero);
         }
         let half_vectors = cap.half_vectors(&self.incoming);
-        let (fresnel, ndf) = (fresnel(&half_vectors), ndf(&half_vectors));
-        let greatest = fresnel.greatest
+        let ndf = ndf(&half_vectors);
+        let greatest = fresnel(half_vectors.half_angle_cosines())
             * ndf.greatest
             * self.masking::<G>(
                 outgoing_cosine.greatest,
                 masking_root(outgoing_cosine.greatest),
             );
-        let typical = fresnel.typical
+        let typical = fresnel(half_vectors.typical_half_angle_cosines())
             * ndf.typical
             * self.masking::<G>(
                 outgoing_cosine.typical,
@@ -125,22 +125,12 @@ impl<N: Single> GgxMembers<N> {
     ) -> Majorant<N> {
         self.majorant::<G>(
             #[inline(always)]
-            |half_vectors| {
-                let [greatest, typical] = [
-                    half_vectors.half_angle_cosines(),
-                    [half_vectors.typical_half_angle_cosine(); 2],
-                ]
-                .map(
+            |cosines| {
+                quasi_convex_maximum(
                     #[inline(always)]
-                    |cosines| {
-                        quasi_convex_maximum(
-                            #[inline(always)]
-                            |cosine| reflectance(cosine),
-                            cosines,
-                        )
-                    },
-                );
-                Majorant { greatest, typical }
+                    |cosine| reflectance(cosine),
+                    cosines,
+                )
             },
             ndf,
             masking_root,

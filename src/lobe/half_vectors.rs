@@ -28,27 +28,6 @@
 //! nearly linear in ν, and is so exactly where n is along k or across. A tangent in its place leaves a quadratic
 //! equation. Any ν is safe, so that an error of the tangent, or of rounding, costs sharpness alone, in second order.
 //!
-//! # The half angle
-//!
-//! ω_i·ω_h is the cosine of half the angle between the directions. That of i and w has the cosine ½‖h‖ and the sine
-//! ½‖k‖. Both caps together widen the angle by no more than that whose half has the sine ½c. So the least cosine is
-//! ½(‖h‖√(1 − ¼c²) − ½c‖k‖), while ½(‖h‖ − c) would be that of a wider angle: by a half where F begins to be total
-//! in glass, infinitely steep.
-//!
-//! # Two scales
-//!
-//! On an anisotropic surface the least ‖Px‖ is asked for, where P takes the unit half vector x to two coordinates, and
-//! stretches each. By the Cauchy–Schwarz inequality it is at least d·x/‖g‖ for d = Pᵀg and any g. The cone has
-//! 4x_k² + ‖h‖²x_a² ≤ c², and hence x·h ≥ √(‖h‖² − c²). So, with the unit vector m along h,
-//!
-//! d·x ≥ (d·m)√(1 − c²/‖h‖²) − (c/‖h‖)√(‖d × m‖² − ¼(d·k)²),
-//!
-//! where the last root is √(¼‖h‖²d_k² + d_a²), because ‖k‖² = 4 − ‖h‖². If d·m is negative, so is what is on the right,
-//! and zero is the bound. For the best g this is the distance to the nearest point of an ellipse. With B such that
-//! dᵀBd‖h‖² is the square of that root, and Δ = (PPᵀ)⁻¹, it has d = (B + λΔ)⁻¹m for the λ where dᵀBd = c². Its
-//! inverse root is nearly linear in λ, so one step of Newton's method is enough, from the λ that is right for
-//! multiples of d = Δ⁻¹m. Again any d is safe.
-//!
 //! # Near grazing
 //!
 //! The cone is the flatter the shorter h is, and the root bends more. So x_k² is given the weight
@@ -72,13 +51,6 @@ const SINE_ROUNDINGS: u16 = 16;
 const SQUARED_SINE_ROUNDINGS: u16 = 2 * SINE_ROUNDINGS;
 /// Budget for the length of a half vector in the sine, in units of u.
 const LENGTH_ROUNDINGS: f32 = 20.0;
-/// Budget for the least length of a half vector in the half angle, in units of u.
-const LEAST_LENGTH_ROUNDINGS: f32 = 64.0;
-/// Budget for a bound of d·x, in units of u times ‖d‖/‖h‖.
-const LINEAR_ROUNDINGS: f32 = 128.0;
-/// The least share of its leading term that the first λ has. Where the ellipse nears the origin, a λ of zero would take
-/// Newton's method far off.
-const LEAST_SHARE: f32 = 1.0 / 1024.0;
 /// The γ of half vectors whose least length is one. Down to a length of ½ cones are what they are.
 const FLATNESS: f32 = 4.0;
 /// The share by which the chord of directions is enlarged, so that sines nest.
@@ -98,6 +70,8 @@ pub struct HalfVectors<N> {
     /// ‖h‖
     length: N,
     inverse_length: N,
+    /// The least and the greatest length. The latter is positive.
+    lengths: [N; 2],
     chord: N,
 }
 
@@ -112,6 +86,10 @@ impl<N: Single> HalfVectors<N> {
             difference: incoming.axis - outgoing.axis,
             length,
             inverse_length: length.splat(1.0) / length,
+            lengths: [
+                (length - chord).max(length.zero()),
+                (length + chord).min(length.splat(2.0)),
+            ],
             chord,
         }
     }
@@ -125,26 +103,16 @@ impl<N: Single> HalfVectors<N> {
     /// The least and the greatest cosine ω_i·ω_h = ½‖ω_i + ω‖ of the half angle.
     #[inline(always)]
     pub fn half_angle_cosines(&self) -> [N; 2] {
-        let one = self.length.splat(1.0);
-        // The sine of half the angle of both caps.
-        let sine = (self.chord * 0.5).min(one);
-        let cosine = (sine.one_minus() * (sine + 1.0)).sqrt();
-        let least = self.length * cosine - self.difference.length() * sine;
-        let least = (least - LEAST_LENGTH_ROUNDINGS * UNIT_ROUNDOFF).max(one.zero());
-        let greatest = (self.length + self.chord) * 0.5;
-        [least * 0.5, greatest.min(one)]
+        self.lengths.map(
+            #[inline(always)]
+            |length| length * 0.5,
+        )
     }
 
-    /// A lower bound of the cosine of the half angle, which nests.
+    /// That of the middle, for both.
     #[inline(always)]
-    pub fn low_half_angle_cosine(&self) -> N {
-        (self.length - self.chord).max(self.length.zero()) * 0.5
-    }
-
-    /// That of the middle.
-    #[inline(always)]
-    pub fn typical_half_angle_cosine(&self) -> N {
-        (self.length * 0.5).min(self.length.splat(1.0))
+    pub fn typical_half_angle_cosines(&self) -> [N; 2] {
+        [(self.length * 0.5).min(self.length.splat(1.0)); 2]
     }
 
     /// The least squared sine of the angle to one of `normals`, at most 1.
@@ -217,71 +185,26 @@ impl<N: Single> HalfVectors<N> {
         self.chord * self.inverse_length + normals.chord
     }
 
-    /// The least √(x²/p + y²/q) for the unit vectors (x, y, z) along the half vectors, in the frame to which `to_frame`
-    /// rotates, and \[p, q\] = `squares`, which are positive.
+    /// The least length of (x/a, y/b) for the unit vectors (x, y, z) along the half vectors, in the frame to
+    /// which `to_frame` rotates, and the reciprocals `factors` = \[1/a, 1/b\].
+    ///
+    /// By the triangle inequality, or by that of each coordinate alone: the greater of both.
     #[inline(always)]
-    pub fn least_scaled_sine(&self, to_frame: &Matrix3<N>, squares: [N; 2]) -> N {
-        let (zero, chord) = (self.chord.zero(), self.chord);
-        let m = *to_frame * self.middle * self.inverse_length;
-        let k = *to_frame * self.difference;
-        let direction = self.towards_nearest(m, k, squares);
-        // Its scale does not matter, but its square may underflow.
-        let [x, y] = direction;
-        let scale = zero.splat(1.0) / x.abs().max(y.abs());
-        let [x, y] = [x * scale, y * scale];
-
-        let squared = x * x + y * y;
-        let across = x * m.y - y * m.x;
-        let along = x * k.x + y * k.y;
-        let cross_squared = squared * (m.z * m.z) + across * across;
-        let width = (cross_squared - along * along * 0.25).max(zero).sqrt();
-        let length = (self.length - LENGTH_ROUNDINGS * UNIT_ROUNDOFF).max(zero);
-        let ratio = chord / length;
-        let cosine = (ratio.one_minus() * (ratio + 1.0)).max(zero).sqrt();
-        let rounding = squared.sqrt() * (LINEAR_ROUNDINGS * UNIT_ROUNDOFF) / length;
-        let least = (x * m.x + y * m.y) * cosine - ratio * width - rounding;
-        let [p, q] = squares;
-        let least = least / (x * x * p + y * y * q).sqrt() * round_down(1.0, SINE_ROUNDINGS);
-        // NaN where there is no d.
-        Real::max(least, zero)
+    pub fn least_scaled_sine(&self, to_frame: &Matrix3<N>, factors: [N; 2]) -> N {
+        let [a, b] = factors;
+        let Vector3 { x, y, .. } = *to_frame * self.middle;
+        let (zero, chord) = (a.zero(), self.chord);
+        let together = length(x * a, y * b) - chord * a.max(b);
+        let alone = length(
+            (x.abs() - chord).max(zero) * a,
+            (y.abs() - chord).max(zero) * b,
+        );
+        Real::max(together, alone) / self.lengths[1] * round_down(1.0, SINE_ROUNDINGS)
     }
+}
 
-    /// The d for which the bound of ‖Px‖ is greatest, or nearly so: x and y, of any scale.
-    #[inline(always)]
-    fn towards_nearest(&self, m: Vector3<N>, k: Vector3<N>, [p, q]: [N; 2]) -> [N; 2] {
-        let (zero, inverse_chord) = (self.chord.zero(), self.chord.splat(1.0) / self.chord);
-        let inverse_squared = self.inverse_length * self.inverse_length;
-        let ellipse = [
-            (m.y * m.y + m.z * m.z - k.x * k.x * 0.25) * inverse_squared,
-            -(m.x * m.y + k.x * k.y * 0.25) * inverse_squared,
-            (m.x * m.x + m.z * m.z - k.y * k.y * 0.25) * inverse_squared,
-        ];
-        let times = |[x, y]: [N; 2]| {
-            let [xx, xy, yy] = ellipse;
-            [xx * x + xy * y, xy * x + yy * y]
-        };
-        let dot = |[a, b]: [N; 2], [c, d]: [N; 2]| a * c + b * d;
-        let middle = [m.x, m.y];
-
-        let first = [m.x / p, m.y / q];
-        let squared = dot(first, times(first)).max(zero);
-        let leading = squared.sqrt() * inverse_chord;
-        let multiplier = leading - squared / dot(first, middle);
-        let multiplier = multiplier.max(leading * LEAST_SHARE);
-        let [p, q] = [p * multiplier, q * multiplier];
-        // Of B + λΔ for `share` of the first λ.
-        let solve = |share: N, [x, y]: [N; 2]| {
-            let [xx, xy, yy] = ellipse;
-            let [xx, yy] = [xx + p * share, yy + q * share];
-            let inverse = (xx * yy - xy * xy).recip();
-            [(yy * x - xy * y) * inverse, (xx * y - xy * x) * inverse]
-        };
-        let one = zero.splat(1.0);
-        let second = solve(one, middle);
-        let image = times(second);
-        let squared = dot(second, image).max(zero);
-        let slope = dot(solve(one, image), [p * second[0], q * second[1]]);
-        let step = squared * (squared.sqrt() * inverse_chord - 1.0) / slope;
-        solve(Real::max(step + 1.0, zero), middle)
-    }
+/// √(x² + y²)
+#[inline(always)]
+fn length<N: Single>(x: N, y: N) -> N {
+    (x * x + y * y).sqrt()
 }

@@ -235,19 +235,21 @@ impl<N: Single> PhongLobes<N> {
     /// The majorant within a cap.
     #[inline(always)]
     fn majorant(&self, cap: &Caps<N>) -> Majorant<N> {
+        let [normals, axes] = [self.normal, self.axis].map(
+            #[inline(always)]
+            |axis| Caps::around(axis),
+        );
         self.majorant_of(
-            &Caps::around(self.normal),
-            cap.distances_from(self.axis),
-            cap.chord,
+            &normals,
+            &axes,
             #[inline(always)]
             |_| self.exponent,
             cap,
         )
     }
 
-    /// The majorant of lobes with other normals and axes, at the least and the middle of the distances between axes and
-    /// directions, which are spread. `exponent` gives that for which the lobe is greatest at a distance from the axis, of
-    /// which it takes half the square.
+    /// The majorant of lobes with other normals and axes. `exponent` gives that for which the lobe is greatest at a
+    /// distance from the axis, of which it takes half the square.
     ///
     /// The typical value is that between the axes, of the lobe that is wider by the spread of the directions. A power
     /// of the cosine is nearly an SG of the sharpness n, whose variance is 1/n for each of two axes; that of a disc of
@@ -256,13 +258,12 @@ impl<N: Single> PhongLobes<N> {
     pub(super) fn majorant_of(
         &self,
         normals: &Caps<N>,
-        distances: [N; 2],
-        spread: N,
+        axes: &Caps<N>,
         exponent: impl FnOnce(N) -> N,
         cap: &Caps<N>,
     ) -> Majorant<N> {
         let above = cap.greatest_cosine(normals).is_positive();
-        let [least, middle] = distances.map(
+        let [least, middle] = cap.distances(axes).map(
             #[inline(always)]
             |distance| distance.widen() * distance.widen(),
         );
@@ -273,6 +274,7 @@ impl<N: Single> PhongLobes<N> {
             return Majorant::exactly(zero);
         }
         let exponent = exponent(N::narrow(least * 0.5));
+        let spread = cap.spread(axes);
         let wider = exponent / (exponent * spread * spread * 0.25 + 1.0);
         let greatest = Self { exponent, ..*self }.value_at(least, above);
         let typical = Self {

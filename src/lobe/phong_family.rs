@@ -100,12 +100,10 @@ impl LobeFamily for PhongFamily {
             exponent: albedo.zero(),
             albedo,
         };
-        let axes = self.axes.splat(albedo);
         let [least, most] = self.exponents;
         lobes.majorant_of(
             &self.normals.splat(albedo),
-            cap.distances(&axes),
-            cap.spread(&axes),
+            &self.axes.splat(albedo),
             #[inline(always)]
             |versine| {
                 let worst = N::per_lane(

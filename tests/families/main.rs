@@ -3,7 +3,6 @@
 //!
 //! `CASES=100000000 cargo test --release --test families -- --nocapture` is the long run.
 
-mod alone;
 mod closing;
 mod members;
 
@@ -98,6 +97,9 @@ fn check<L: ReceiverLobe>(rng: &mut Rng, members: &[Member<L>]) -> usize {
             );
         }
         check_nesting(rng, &cap, (&part, &whole));
+        for member in members {
+            check_nesting_alone(rng, &cap, &member.lobe);
+        }
     }
     CAPS_PER_FAMILY * members.len()
 }
@@ -113,13 +115,31 @@ fn check_nesting<F: LobeFamily>(rng: &mut Rng, cap: &Cap, (part, whole): (&F, &F
     check_nesting_around(axis + unit_vector(rng) * offset, cap, (part, whole));
 }
 
-/// As [`check_nesting`], for the cap around the direction of `aim`.
-fn check_nesting_around<F: LobeFamily>(aim: Vector, cap: &Cap, (part, whole): (&F, &F)) {
+/// As [`check_nesting`], of one lobe: that of a light is bounded alone for tiles and blocks.
+fn check_nesting_alone<L: Lobe>(rng: &mut Rng, cap: &Cap, lobe: &L) {
+    let axis = Vector::from(*cap.axis()).unit();
+    let offset = log_uniform(rng, 1e-6, 1.0);
+    let greater = cap_around(axis + unit_vector(rng) * offset, cap);
+    let [less, more] = [cap, &greater].map(|cap| f64::from(lobe.maximum_within(cap)));
+    assert!(
+        less <= more * (1.0 + 512.0 * UNIT_ROUNDOFF),
+        "{less} in {cap:?}, but {more} in {greater:?}: {}",
+        std::any::type_name::<L>()
+    );
+}
+
+/// The least cap around the direction of `aim` and another cap.
+fn cap_around(aim: Vector, cap: &Cap) -> Cap {
     let axis = Vector::from(*cap.axis()).unit();
     let around = direction(aim.unit());
     let apart = (Vector::from(*around).unit() - axis).length();
     let chord = apart + f64::from(cap.chord()) + 96.0 * UNIT_ROUNDOFF;
-    let greater = Cap::new(around, chord.min(2.0) as f32).expect("in range");
+    Cap::new(around, chord.min(2.0) as f32).expect("in range")
+}
+
+/// As [`check_nesting`], for the cap around the direction of `aim`.
+fn check_nesting_around<F: LobeFamily>(aim: Vector, cap: &Cap, (part, whole): (&F, &F)) {
+    let greater = cap_around(aim, cap);
     let [less, more] = [part.greatest_within(cap), whole.greatest_within(&greater)].map(f64::from);
     assert!(
         less <= more * (1.0 + 512.0 * UNIT_ROUNDOFF),
