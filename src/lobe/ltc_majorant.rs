@@ -10,7 +10,7 @@ const MAXIMUM_ROUNDINGS: u16 = 32;
 /// product of their lengths.
 const CROSS_ROUNDINGS: f64 = 4.0;
 /// Budget for the other rows in the value, and for lengths of directions, in units of u and the norm of the matrix.
-const IMAGE_ROUNDINGS: f64 = 8.0;
+const VALUE_ROUNDINGS: f64 = 8.0;
 /// Keeps the image of a direction away from zero.
 const LEAST_IMAGE: f64 = 1e-60;
 
@@ -25,7 +25,7 @@ pub(super) fn rounding_of_image<D: Double>(first: D, third: D) -> D {
 #[inline(always)]
 pub(super) fn rounding_of_value<D: Double>([first, second, third]: [D; 3]) -> D {
     let norm = (first + second + third).sqrt();
-    norm * (IMAGE_ROUNDINGS * f64::from(UNIT_ROUNDOFF)) + rounding_of_image(first, third)
+    norm * (VALUE_ROUNDINGS * f64::from(UNIT_ROUNDOFF)) + rounding_of_image(first, third)
 }
 
 impl<N: Single> LtcLobes<N> {

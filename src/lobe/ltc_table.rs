@@ -54,7 +54,8 @@ pub(crate) fn matrix_of(knots: &Matrices, root: f64, incidence: f64) -> [f64; MA
     elements
 }
 
-/// The albedos n_A and f_A, less what the fit gives away, interpolated linearly at √α = `root` and tan(θ/2) + tan(δ/2) = 2·`incidence`.
+/// The albedos n_A and f_A, less what the fit gives away, interpolated linearly at √α = `root` and
+/// tan(θ/2) + tan(δ/2) = 2·`incidence`.
 #[inline]
 pub(crate) fn albedos(root: f64, incidence: f64) -> [f64; ALBEDOS] {
     interpolated(&ALBEDO_PAIRS, knot_and_rest(root), knot_and_rest(incidence))
