@@ -165,19 +165,27 @@ impl LightLists {
     }
 
     /// The range of the list of `slot` in `lights`.
+    #[inline]
     pub(super) fn range(&self, slot: usize) -> Range<usize> {
         let [start, end] = self.ranges[slot].map(|n| n as usize);
         start..end
     }
 
     /// The part of `lights` that is not in use, at least `count` long.
+    #[inline(always)]
     pub(super) fn room_for(&mut self, count: usize) -> &mut [u32] {
         let end = self.len + count;
         if self.lights.len() < end {
-            self.lights.resize(end.max(2 * self.lights.len()), 0);
-            self.has_grown = true;
+            self.grow(end);
         }
         &mut self.lights[self.len..]
+    }
+
+    /// Grows `lights` to at least `len`.
+    #[cold]
+    fn grow(&mut self, len: usize) {
+        self.lights.resize(len.max(2 * self.lights.len()), 0);
+        self.has_grown = true;
     }
 
     /// Reserves room for half as many lights again if the lists grew. So frames after the first seldom allocate.

@@ -210,6 +210,7 @@ impl TileDepths {
         intervals.position(holds).map(|interval| interval as u32)
     }
 
+    #[inline]
     #[track_caller]
     fn index_of(&self, tile: [u32; 2]) -> [usize; 2] {
         let [x, y] = tile.map(|n| n as usize);
@@ -246,6 +247,7 @@ impl TileDepths {
     }
 
     /// The depth intervals of the tile at column `x` and row `y`.
+    #[inline]
     pub(super) fn depths_of(&self, x: usize, y: usize) -> &[[f32; 2]] {
         let first = (y * self.columns.len() + x) * self.intervals;
         &self.depths[first..][..self.intervals]

@@ -14,7 +14,7 @@ use super::tile_depths::{Area, is_none};
 use super::{CullCounters, TileDepths};
 use crate::num::F32Lanes;
 use crate::project::Projected;
-use crate::touch::BoxTest;
+use crate::touch::{BoxTest, Outline};
 use crate::view::ViewBounds;
 
 /// Sixteen lights: the fields of their shapes, and a number for each, which lists hold.
@@ -166,8 +166,20 @@ impl ListWriter {
                     continue;
                 }
                 counters.box_tests += (count * intervals * S::u32s::LEN) as u64;
-                self.test_candidates(simd, chunks, &tile, count, tiles.depths_of(x, y), room);
                 let slot = output.window.slot([x, y], intervals);
+                if intervals == 1 {
+                    // The only list of the tile is made where it stays.
+                    let list = output.lists.room_for((count + 1) * S::u32s::LEN);
+                    let mut len = 0;
+                    for vector in &self.candidates[..count] {
+                        let candidate = Candidate::load(simd, chunks, *vector, &tile);
+                        len += candidate.write_touching(&tile, &mut list[len..]);
+                    }
+                    output.lists.set_range(slot, 0..len);
+                    output.lists.advance(len);
+                    continue;
+                }
+                self.test_candidates(simd, chunks, &tile, count, tiles.depths_of(x, y), room);
                 for interval in 0..intervals {
                     let len = core::mem::take(&mut self.lens[interval]);
                     let list = &self.lists[interval * room..][..room];
@@ -211,24 +223,49 @@ impl ListWriter {
         intervals: &[[f32; 2]],
         room: usize,
     ) {
-        for candidate in &self.candidates[..count] {
-            let vector = *candidate as usize;
-            let (chunk, part) = (&chunks[vector / parts::<S>()], vector % parts::<S>());
-            let fields = chunk.load(simd, part);
-            let numbers = load_indices(simd, &chunk.numbers, part);
-            let bounds = P::bounds_of(&fields);
-            let outline = P::outline(&fields, tile.across, tile.down);
+        for vector in &self.candidates[..count] {
+            let candidate = Candidate::load(simd, chunks, *vector, tile);
             for (interval, depths) in intervals.iter().enumerate() {
                 if is_none(*depths) {
                     continue;
                 }
                 let depths = splat(simd, *depths);
-                let meet = bounds.meet(&ViewBounds { depths, ..*tile });
-                let touching = meet & !P::misses(&fields, &outline, depths);
+                let part = ViewBounds { depths, ..*tile };
                 let len = &mut self.lens[interval];
                 let list = &mut self.lists[interval * room + *len..];
-                *len += write_chosen::<S>(numbers, touching, list);
+                *len += candidate.write_touching(&part, list);
             }
         }
+    }
+}
+
+/// A vector of lights that is tested against the depth intervals of a tile.
+struct Candidate<S: Simd, P: BoxTest> {
+    fields: P::Fields<F32Lanes<S>>,
+    numbers: S::u32s,
+    outline: Outline<F32Lanes<S>>,
+}
+
+impl<S: Simd, P: BoxTest> Candidate<S, P> {
+    /// The `vector`-th vector of `chunks`, to be tested against `tile`.
+    #[inline(always)]
+    fn load(simd: S, chunks: &[Chunk<P>], vector: u32, tile: &ViewBounds<F32Lanes<S>>) -> Self {
+        let vector = vector as usize;
+        let (chunk, part) = (&chunks[vector / parts::<S>()], vector % parts::<S>());
+        let fields = chunk.load(simd, part);
+        Self {
+            numbers: load_indices(simd, &chunk.numbers, part),
+            outline: P::outline(&fields, tile.across, tile.down),
+            fields,
+        }
+    }
+
+    /// Writes the numbers of the lights that may touch the tile at the depths of `part` to the front of `list`.
+    /// Returns how many do.
+    #[inline(always)]
+    fn write_touching(&self, part: &ViewBounds<F32Lanes<S>>, list: &mut [u32]) -> usize {
+        let meet = P::bounds_of(&self.fields).meet(part);
+        let touching = meet & !P::misses(&self.fields, &self.outline, part.depths);
+        write_chosen::<S>(self.numbers, touching, list)
     }
 }

@@ -5,6 +5,8 @@ mod frustum;
 mod receivers;
 
 pub use box_test::BoxTest;
+#[cfg(feature = "cull")]
+pub(crate) use box_test::Outline;
 pub(crate) use frustum::Frustum;
 #[cfg(feature = "cull")]
 pub(crate) use receivers::LitFrom;

@@ -100,6 +100,8 @@ struct ListLanes {
     /// The turn of each lane's point.
     turns: [usize; 2 * LANES],
     len: usize,
+    /// What was evaluated last.
+    estimates: BlockEstimates,
 }
 
 impl<S: Simd, R: FilledLanes<S>> PointLanes<S, R> {
@@ -137,6 +139,7 @@ impl ListLanes {
             weights: [1.0; 2 * LANES],
             turns: [0; 2 * LANES],
             len: 0,
+            estimates: BlockEstimates::NONE,
         }
     }
 
@@ -161,7 +164,7 @@ impl ListLanes {
             (taken, weights) = weights.split_at(count);
             copy(taken, &mut self.weights[start..]);
         }
-        self.turns[start..][..LANES].fill(turn);
+        self.turns[start..][..S::f32s::LEN].fill(turn);
         self.len = start + count;
         WeightedList { lights, weights }
     }
@@ -211,15 +214,14 @@ impl ListLanes {
         };
         let mut reflected = [0.0; LANES];
         store(&mut reflected, 0, found.reflected);
-        let mut estimates = BlockEstimates::NONE;
-        estimates.store(0, &found);
+        self.estimates.store(0, &found);
         let mut accepted = found.accepted & filled;
         while accepted != 0 {
             let lane = accepted.trailing_zeros() as usize % LANES;
             accepted &= accepted - 1;
-            estimates.light = self.lights[lane];
+            self.estimates.light = self.lights[lane];
             let (turn, reflected) = (self.turns[lane], reflected[lane]);
-            state = each(state, turn, &estimates.estimate(lane), reflected);
+            state = each(state, turn, &self.estimates.estimate(lane), reflected);
         }
         state
     }

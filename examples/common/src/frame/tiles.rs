@@ -99,6 +99,11 @@ impl Tiles {
         tile_size: u32,
         slicing: Slicing,
     ) -> Result<Self, Error> {
+        let slicing = match slicing {
+            // A pixel has one depth.
+            Slicing::HalfZ | Slicing::ModifiedHalfZ if tile_size == 1 => Slicing::Whole,
+            _ => slicing,
+        };
         let slicing = Parting::new(slicing, surfaces);
         let subregion = |subregion| {
             let grid = TileGrid::new(interleave.subregion_size(subregion), tile_size)?;
