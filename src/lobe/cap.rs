@@ -9,7 +9,8 @@
 //! So within a cap of axis w and chord c, for fixed unit vectors n and ω_i and h = ω_i + w,
 //!
 //! - ω·n ≤ w·n + c;
-//! - ‖ω − u‖ ≥ ‖w − u‖ − c for any u;
+//! - ‖ω − u‖ ≥ ‖w − u‖ − c for any unit vector u, and at least ‖w − u‖√(1 − ¼c²) − ½c‖w + u‖, the chord of the
+//!   difference of both angles;
 //! - the half vector ω_i + ω lies within c of h. So ‖h‖ − c ≤ ‖ω_i + ω‖ ≤ min(‖h‖ + c, 2). All of them fill an
 //!   elliptic cone, whose least angle to n is in closed form (`half_vectors`).
 //!

@@ -20,6 +20,11 @@ use crate::num::{Real, Single, UNIT_ROUNDOFF, Vector3, round_down};
 const DISTANCE_ROUNDINGS: u16 = 4;
 /// Budget for the chord of a ball, beside that of its distance.
 const BALL_ROUNDINGS: u16 = 6;
+/// Budget for the chord of a difference of two angles, in units of u.
+const DIFFERENCE_ROUNDINGS: f32 = 40.0;
+/// √2, the distance of directions at a right angle: below, that of a difference of angles falls by at least 1/√2 of what
+/// a chord grows by.
+const STEEP_DISTANCE: f32 = core::f32::consts::SQRT_2;
 
 /// A [`Cap`] in each lane.
 ///
@@ -137,10 +142,19 @@ impl<N: Single> Caps<N> {
     }
 
     /// The least distance ‖ω − u‖ for u in `axes`, and that of both axes.
+    ///
+    /// That of the difference of both angles, up to [`STEEP_DISTANCE`]. Beyond, where chords hardly matter to it, rounding
+    /// could make it greater in a greater cap, and the triangle inequality is enough.
     #[inline(always)]
     pub fn distances(&self, axes: &Self) -> [N; 2] {
         let middle = (self.axis - axes.axis).length();
-        let least = Real::max(middle - self.spread(axes), middle.zero());
+        let spread = self.spread(axes);
+        let cosine = (self.axis + axes.axis).length() * 0.5;
+        let of_spread = half_angle_cosine(spread);
+        let of_difference = middle * of_spread - spread * cosine;
+        let of_difference = of_difference - DIFFERENCE_ROUNDINGS * UNIT_ROUNDOFF;
+        let least = Real::max(middle - spread, middle.zero());
+        let least = of_difference.min(spread.splat(STEEP_DISTANCE)).max(least);
         [least, middle]
     }
 
@@ -155,4 +169,11 @@ impl<N: Single> Caps<N> {
     pub fn half_vectors(&self, incoming: &Self) -> HalfVectors<N> {
         HalfVectors::of(incoming, self)
     }
+}
+
+/// cos ½γ for the angle γ of a chord, or zero for chords above 2.
+#[inline(always)]
+pub(super) fn half_angle_cosine<N: Single>(chord: N) -> N {
+    let sine = (chord * 0.5).min(chord.splat(1.0));
+    (sine.one_minus() * (sine + 1.0)).sqrt()
 }

@@ -7,8 +7,8 @@
 //! the family whose chords are zero. Let w be the axis of the cap, c_w its chord, h = i + w and c = c_i + c_w. Then, for
 //! any member and any direction of the cap,
 //!
-//! - the half vector is within c of h, so its length is between ‖h‖ − c and L = min(‖h‖ + c, 2), and cosθ_h is half of
-//!   that;
+//! - the half vector is within c of h, so its length is at most L = min(‖h‖ + c, 2), and cosθ_h half of that; the least
+//!   cosθ_h is that of a sum of angles (`half_vectors`);
 //! - the sine of its angle to the member's normal is at least s = max(0, s₀ − c_n), where s₀ is the least sine of the
 //!   angles between n and the elliptic cone of the unit half vectors (`half_vectors`), since the cross product with a
 //!   unit vector changes by no more than the other vector does;
@@ -30,7 +30,7 @@
 //! # It nests
 //!
 //! Let n′, i′, w′ and their chords be those of a greater pair: c′_n ≥ ‖n′ − n‖ + c_n, and so on. Then
-//! ‖h′ − h‖ ≤ c′ − c. Hence ‖h′‖ − c′ ≤ ‖h‖ − c and L′ ≥ L. The cone of the greater pair holds that of the lesser, so
+//! ‖h′ − h‖ ≤ c′ − c. Hence L′ ≥ L, and the least cosθ_h is no greater. The cone of the greater pair holds that of the lesser, so
 //! s₀′ ≤ s₀ + ‖n′ − n‖, and s′ ≤ s. In the same way m′ ≥ m, and a chord that is clamped to 2 makes s′ zero and m′ one.
 //! D̂ is a maximum over a set that grows with the family, of a function that falls with s; F̂ and the bound of G2 are
 //! monotonic in all of their numbers. So the majorant of the greater pair is at least that of the lesser.

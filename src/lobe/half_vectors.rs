@@ -28,6 +28,17 @@
 //! nearly linear in ν, and is so exactly where n is along k or across. A tangent in its place leaves a quadratic
 //! equation. Any ν is safe, so that an error of the tangent, or of rounding, costs sharpness alone, in second order.
 //!
+//! # The half angle
+//!
+//! ω_i·ω_h is the cosine of half the angle between the directions. That of i and w has the cosine ½‖h‖ and the sine
+//! ½‖k‖. Both caps together widen the angle by no more than that whose half has the sine ½c, since the arcsine is
+//! superadditive. So the least cosine is ½(‖h‖√(1 − ¼c²) − ½c‖k‖). It nests: where an axis moves, the chord grows by as
+//! much, and the angle of a sum of chords is at least the sum of their angles.
+//!
+//! By the triangle inequality it is at least ½(‖h‖ − c), the cosine for an angle that is wider by up to a half: too wide
+//! where glass begins to reflect all light, and F is infinitely steep. That serves from [`STEEP_LENGTH`] on, where a
+//! growing chord hardly lessens the cosine of the sum, and rounding could make it greater.
+//!
 //! # Near grazing
 //!
 //! The cone is the flatter the shorter h is, and the root bends more. So x_k² is given the weight
@@ -43,6 +54,7 @@
 //! chords are enlarged by these shares.
 
 use super::Caps;
+use super::caps::half_angle_cosine;
 use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3, round_down};
 
 /// Budget for the sine of a half vector's angle.
@@ -51,6 +63,11 @@ const SINE_ROUNDINGS: u16 = 16;
 const SQUARED_SINE_ROUNDINGS: u16 = 2 * SINE_ROUNDINGS;
 /// Budget for the length of a half vector in the sine, in units of u.
 const LENGTH_ROUNDINGS: f32 = 20.0;
+/// Budget for the length of a half vector by a sum of angles, in units of u.
+const SUM_ROUNDINGS: f32 = 64.0;
+/// Twice the cosine of a half angle of 20°. Below, the length by a sum of angles falls by at least a third of what the
+/// chord grows by, which is more than rounding where clusters are merged.
+const STEEP_LENGTH: f32 = 1.88;
 /// The γ of half vectors whose least length is one. Down to a length of ½ cones are what they are.
 const FLATNESS: f32 = 4.0;
 /// The share by which the chord of directions is enlarged, so that sines nest.
@@ -103,10 +120,12 @@ impl<N: Single> HalfVectors<N> {
     /// The least and the greatest cosine ω_i·ω_h = ½‖ω_i + ω‖ of the half angle.
     #[inline(always)]
     pub fn half_angle_cosines(&self) -> [N; 2] {
-        self.lengths.map(
-            #[inline(always)]
-            |length| length * 0.5,
-        )
+        let [least, greatest] = self.lengths;
+        let of_sum = self.length * half_angle_cosine(self.chord)
+            - self.difference.length() * self.chord * 0.5;
+        let of_sum = of_sum - SUM_ROUNDINGS * UNIT_ROUNDOFF;
+        let least = of_sum.min(least.splat(STEEP_LENGTH)).max(least);
+        [least * 0.5, greatest * 0.5]
     }
 
     /// That of the middle, for both.

@@ -3,6 +3,7 @@
 //!
 //! `CASES=100000000 cargo test --release --test families -- --nocapture` is the long run.
 
+mod alone;
 mod closing;
 mod members;
 

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use fastrand::Rng;
 use stochastic_light_culling::{
-    AnisotropicGgx, AnisotropicGgxLobe, Ggx, GgxLobe, Incidence, LambertLobe, LobeSum, LtcLobe,
-    PhongLobe, SphericalGaussian, SpotLobe,
+    AnisotropicGgx, AnisotropicGgxLobe, Direction, Ggx, GgxLobe, Incidence, LambertLobe, Lobe,
+    LobeSum, LtcLobe, PhongLobe, SphericalGaussian, SpotLobe,
 };
 use support::adversary::{
     chance, cone_angles, direction, exponent, fresnel, log_uniform, sharpness, unit_vector,
@@ -156,39 +156,48 @@ pub fn anisotropic<G>(
     let (fresnel, tangent) = (fresnels(rng), direction(unit_vector(rng)));
     members(rng, |rng, lit| {
         let roughness = [alphas[0](rng), alphas[1](rng)];
-        let fresnel = fresnel(rng);
-        let brdf = Brdf::Anisotropic {
-            roughness,
-            tangent,
-            fresnel,
-            masking,
-        };
-        let brdf = brdf.laid_on(lit.surface.normal);
-        let Brdf::Anisotropic { tangent, .. } = brdf else {
-            unreachable!("it is laid another way, but no other lobe")
-        };
-        let ggx = AnisotropicGgx::new(roughness[0], roughness[1]).expect("in range");
-        let lobe = AnisotropicGgxLobe::new(ggx, given(fresnel), incidence(lit), tangent);
-        Member::new(lobe.expect("a frame").with_masking(), lit, brdf)
+        anisotropic_of((roughness, tangent, fresnel(rng), masking), lit)
     })
+}
+
+/// The lobe of this roughness, tangent, Fresnel factor and masking.
+pub fn anisotropic_of<G>(
+    (roughness, tangent, fresnel, masking): ([f32; 2], Direction, Fresnel, Masking),
+    lit: &Lit,
+) -> Member<AnisotropicGgxLobe<GivenFresnel, G>> {
+    let brdf = Brdf::Anisotropic {
+        roughness,
+        tangent,
+        fresnel,
+        masking,
+    };
+    let brdf = brdf.laid_on(lit.surface.normal);
+    let Brdf::Anisotropic { tangent, .. } = brdf else {
+        unreachable!("it is laid another way, but no other lobe")
+    };
+    let ggx = AnisotropicGgx::new(roughness[0], roughness[1]).expect("in range");
+    let lobe = AnisotropicGgxLobe::new(ggx, given(fresnel), incidence(lit), tangent);
+    Member::new(lobe.expect("a frame").with_masking(), lit, brdf)
 }
 
 pub fn lambert(rng: &mut Rng) -> Vec<Member<LambertLobe>> {
     let albedo = albedos(rng);
-    members(rng, |rng, lit| {
-        let albedo = albedo(rng);
-        let lobe = LambertLobe::new(albedo, lit.normal).expect("in range");
-        Member::new(lobe, lit, Brdf::Lambert { albedo })
-    })
+    members(rng, |rng, lit| lambert_of(albedo(rng), lit))
+}
+
+pub fn lambert_of(albedo: f32, lit: &Lit) -> Member<LambertLobe> {
+    let lobe = LambertLobe::new(albedo, lit.normal).expect("in range");
+    Member::new(lobe, lit, Brdf::Lambert { albedo })
 }
 
 pub fn phong(rng: &mut Rng) -> Vec<Member<PhongLobe>> {
     let albedo = albedos(rng);
-    members(rng, |rng, lit| {
-        let (albedo, exponent) = (albedo(rng), exponent(rng));
-        let lobe = PhongLobe::new(albedo, exponent, incidence(lit)).expect("in range");
-        Member::new(lobe, lit, Brdf::Phong { albedo, exponent })
-    })
+    members(rng, |rng, lit| phong_of([albedo(rng), exponent(rng)], lit))
+}
+
+pub fn phong_of([albedo, exponent]: [f32; 2], lit: &Lit) -> Member<PhongLobe> {
+    let lobe = PhongLobe::new(albedo, exponent, incidence(lit)).expect("in range");
+    Member::new(lobe, lit, Brdf::Phong { albedo, exponent })
 }
 
 pub fn gaussian(rng: &mut Rng) -> Vec<Member<SphericalGaussian>> {
@@ -200,24 +209,32 @@ pub fn gaussian(rng: &mut Rng) -> Vec<Member<SphericalGaussian>> {
             1 => scale,
             _ => scale * (sharpness + 1.0),
         };
-        let brdf = Brdf::SphericalGaussian {
-            amplitude,
-            sharpness,
-        };
-        let lobe = SphericalGaussian::new(lit.normal, sharpness, amplitude).expect("in range");
-        Member::new(lobe, lit, brdf)
+        gaussian_of([sharpness, amplitude], lit)
     })
+}
+
+pub fn gaussian_of([sharpness, amplitude]: [f32; 2], lit: &Lit) -> Member<SphericalGaussian> {
+    let brdf = Brdf::SphericalGaussian {
+        amplitude,
+        sharpness,
+    };
+    let lobe = SphericalGaussian::new(lit.normal, sharpness, amplitude).expect("in range");
+    Member::new(lobe, lit, brdf)
 }
 
 pub fn transformed_cosine(rng: &mut Rng) -> Vec<Member<LtcLobe>> {
     let (alpha, share) = (shares(rng, 1e-4), albedos(rng));
     members(rng, |rng, lit| {
-        let brdf = Brdf::ltc(alpha(rng), share(rng), None).lit_by(lit.normal, lit.incoming);
-        let Brdf::Ltc { lobe, .. } = brdf else {
-            unreachable!("it is lit another way, but no other lobe")
-        };
-        Member::new(lobe, lit, brdf)
+        transformed_cosine_of([alpha(rng), share(rng)], lit)
     })
+}
+
+pub fn transformed_cosine_of([alpha, share]: [f32; 2], lit: &Lit) -> Member<LtcLobe> {
+    let brdf = Brdf::ltc(alpha, share, None).lit_by(lit.normal, lit.incoming);
+    let Brdf::Ltc { lobe, .. } = brdf else {
+        unreachable!("it is lit another way, but no other lobe")
+    };
+    Member::new(lobe, lit, brdf)
 }
 
 /// Diffuse surfaces under a dielectric, or as a caller weights them.
@@ -225,30 +242,32 @@ pub fn varnished(rng: &mut Rng) -> Vec<Member<LobeSum<LambertLobe, GgxLobe<Given
     let (alpha, fresnel) = (shares(rng, 1e-4), fresnels(rng));
     let (albedo, weights) = (albedos(rng), [albedos(rng), albedos(rng)]);
     members(rng, |rng, lit| {
-        let (roughness, fresnel, albedo) = (alpha(rng), fresnel(rng), albedo(rng));
-        let ggx = Ggx::new(roughness).expect("in range");
-        let masking = Masking::HeightCorrelated;
-        let varnish = Brdf::Ggx {
-            roughness,
-            fresnel,
-            masking,
-        };
-        let weights = [weights[0](rng), weights[1](rng)];
-        let lobe = LobeSum::weighted(
-            weights,
-            LambertLobe::new(albedo, lit.normal).expect("in range"),
-            GgxLobe::new(ggx, given(fresnel), incidence(lit)),
-        );
-        Member {
-            lobe: lobe.expect("in range"),
-            surface: lit.surface,
-            parts: vec![
-                (weights[0], Brdf::Lambert { albedo }),
-                (weights[1], varnish),
-            ],
-            roughness,
-        }
+        let varnish = (alpha(rng), fresnel(rng), Masking::HeightCorrelated);
+        let varnish = ggx_of(varnish, lit);
+        let paint = lambert_of(albedo(rng), lit);
+        weighted([weights[0](rng), weights[1](rng)], paint, varnish)
     })
+}
+
+/// The weighted sum of two lobes of one surface.
+pub fn weighted<A: Lobe, B: Lobe>(
+    weights: [f32; 2],
+    first: Member<A>,
+    second: Member<B>,
+) -> Member<LobeSum<A, B>> {
+    let scaled = |weight: f32, parts: Vec<(f32, Brdf)>| {
+        let scale = move |(own, brdf)| (weight * own, brdf);
+        parts.into_iter().map(scale)
+    };
+    let [of_first, of_second] = weights;
+    Member {
+        lobe: LobeSum::weighted(weights, first.lobe, second.lobe).expect("in range"),
+        surface: first.surface,
+        parts: scaled(of_first, first.parts)
+            .chain(scaled(of_second, second.parts))
+            .collect(),
+        roughness: first.roughness.min(second.roughness),
+    }
 }
 
 /// What has no family: a spot light.
