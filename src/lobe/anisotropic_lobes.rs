@@ -1,9 +1,11 @@
 //! The formulas of [`AnisotropicGgxLobe`](super::AnisotropicGgxLobe), for one lobe in each lane.
 
 use super::anisotropic_ggx::{anisotropic_masking_root, anisotropic_ndf, ndf_of_scaled_sine};
+use super::ggx::masking_root;
 use super::ggx_majorant::GgxMembers;
+use super::half_vectors::HalfVectors;
 use super::{Caps, FIRST_NUMBERS, GgxLobes, LobeNumbers, Majorant, MaskingShadowing};
-use crate::num::{Matrix3, Single, Vector3};
+use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3};
 
 /// α_x and α_y, and the rotation from world space to the frame of the surface.
 #[inline(always)]
@@ -39,7 +41,8 @@ pub(super) fn anisotropic_value<N: Single, G: MaskingShadowing>(
 
 /// The majorant of [`anisotropic_value`] within a cap.
 ///
-/// The root √(α_x²x² + α_y²y² + z²) is least where each coordinate is.
+/// The root √(α_x²x² + α_y²y² + z²) is that of an isotropic surface whose roughness is between α_x and α_y. Its square is
+/// the lesser one, and of the difference the share of the rougher axis in x² + y².
 #[inline(always)]
 pub(super) fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
     at_any_azimuth: &GgxLobes<N>,
@@ -53,11 +56,7 @@ pub(super) fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
         reflectance,
         #[inline(always)]
         |half_vectors| {
-            let factors = roughness.map(
-                #[inline(always)]
-                |alpha| (alpha.one_minus() * (alpha + 1.0)).sqrt() / alpha,
-            );
-            let sine = half_vectors.least_scaled_sine(&to_surface_frame, factors);
+            let sine = least_scaled_sine(half_vectors, &to_surface_frame, roughness, cap.must_nest);
             let greatest = ndf_of_scaled_sine(roughness, sine);
             let filtered = roughness.map(
                 #[inline(always)]
@@ -67,16 +66,58 @@ pub(super) fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
             Majorant { greatest, typical }
         },
         #[inline(always)]
-        |_| {
-            let along = |axis: Vector3<N>| cap.least_magnitude(axis);
-            let [x, y] = [
-                to_surface_frame.transpose().x,
-                to_surface_frame.transpose().y,
-            ]
-            .map(along);
-            let least = Vector3::new(x, y, cap.least_cosine(at_any_azimuth.normal));
-            anisotropic_masking_root(roughness, least)
+        |outgoing_cosine| {
+            masking_root(
+                least_roughness(roughness, &to_surface_frame, cap),
+                outgoing_cosine,
+            )
         },
         cap,
     )
+}
+
+/// A lower bound of √(x²(1/α_x² − 1) + y²(1/α_y² − 1)) for the unit vectors (x, y, z) along the half vectors.
+#[inline(always)]
+fn least_scaled_sine<N: Single>(
+    half_vectors: &HalfVectors<N>,
+    to_surface_frame: &Matrix3<N>,
+    roughness: [N; 2],
+    must_nest: bool,
+) -> N {
+    let rests = roughness.map(
+        #[inline(always)]
+        |alpha| alpha.one_minus() * (alpha + 1.0),
+    );
+    let factors = [
+        rests[0].sqrt() / roughness[0],
+        rests[1].sqrt() / roughness[1],
+    ];
+    let sine = half_vectors.least_scaled_sine(to_surface_frame, factors);
+    if must_nest {
+        return sine;
+    }
+    // Where α is 1, u is as good as zero.
+    let square = |alpha: N, rest: N| alpha * alpha / Real::max(rest, rest.splat(UNIT_ROUNDOFF));
+    let squares = [
+        square(roughness[0], rests[0]),
+        square(roughness[1], rests[1]),
+    ];
+    let sharp = half_vectors.sharp_scaled_sine(to_surface_frame, squares);
+    Real::max(sharp, sine)
+}
+
+/// A lower bound of √(α_x²x² + α_y²y²)/√(x² + y²) for the directions (x, y, z) of a cap.
+#[inline(always)]
+fn least_roughness<N: Single>(
+    [along, across]: [N; 2],
+    to_surface_frame: &Matrix3<N>,
+    cap: &Caps<N>,
+) -> N {
+    let Vector3 { x, y, .. } = *to_surface_frame * cap.axis;
+    let zero = x.zero();
+    let rougher = N::select(along.gt(across), x, y);
+    let length = (x * x + y * y).sqrt();
+    let least = (rougher.abs() - cap.chord).max(zero) / (length + cap.chord);
+    let (less, more) = (along.min(across), along.max(across));
+    (less * less + (more - less) * (more + less) * (least * least)).sqrt()
 }

@@ -145,14 +145,16 @@ impl Cap {
         Caps {
             axis: Vector3::splat(like, self.axis.into()),
             chord: like.splat(self.chord),
+            must_nest: true,
         }
     }
 
-    /// The cap as a single lane, enlarged for rounding.
+    /// The cap as a single lane, enlarged for rounding, for bounds that need not nest.
     pub(super) fn lanes(&self) -> Caps<f32> {
         Caps {
             axis: self.axis.into(),
             chord: self.chord + CHORD_ROUNDINGS * UNIT_ROUNDOFF,
+            must_nest: false,
         }
     }
 }

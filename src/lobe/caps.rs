@@ -36,11 +36,14 @@ pub struct Caps<N> {
     pub(super) axis: Vector3<N>,
     /// At most 2, but for rounding.
     pub(super) chord: N,
+    /// Whether bounds within these caps must be no greater than within caps that hold them. Some bounds are sharper
+    /// without.
+    pub(super) must_nest: bool,
 }
 
 impl<N: Single> Caps<N> {
     /// The directions along `way` to the points of balls of these radii, with a chord that is greater by `margin` than
-    /// rounding asks for. Then a lower bound of the distance to a point of the ball.
+    /// rounding asks for. Then a lower bound of the distance to a point of the ball. With a margin bounds must nest.
     ///
     /// All directions, and zero, if `way` ends in the ball, and if its square is outside the range of `f32`.
     #[inline(always)]
@@ -67,14 +70,24 @@ impl<N: Single> Caps<N> {
             [zero, zero, zero, zero.splat(2.0), zero],
         );
         let axis = Vector3::new(x, y, z);
-        (Self { axis, chord }, gap)
+        let must_nest = margin > 0.0;
+        let caps = Self {
+            axis,
+            chord,
+            must_nest,
+        };
+        (caps, gap)
     }
 
     /// The caps that hold `axis` alone, a unit vector.
     #[inline(always)]
     pub fn around(axis: Vector3<N>) -> Self {
         let chord = axis.x.zero();
-        Self { axis, chord }
+        Self {
+            axis,
+            chord,
+            must_nest: true,
+        }
     }
 
     /// `value` in each lane.
@@ -88,23 +101,25 @@ impl<N: Single> Caps<N> {
     pub(crate) fn opposite(&self) -> Self {
         Self {
             axis: -self.axis,
-            chord: self.chord,
+            ..*self
         }
     }
 
     /// Applies `function` to the cap of each lane.
     #[inline(always)]
-    pub(crate) fn per_lane(&self, mut function: impl FnMut(usize, &Cap) -> f32) -> N {
+    pub(crate) fn per_lane(&self, mut function: impl FnMut(usize, &Caps<f32>) -> f32) -> N {
         let Vector3 { x, y, z } = self.axis;
+        let must_nest = self.must_nest;
         N::per_lane(
             [x, y, z, self.chord],
             #[inline(always)]
             |i, [x, y, z, chord]| {
-                let cap = match Direction::new(Vec3::new(x, y, z)) {
-                    Ok(axis) => Cap { axis, chord },
-                    Err(_) => Cap::all(),
+                let caps = Caps {
+                    axis: Vector3::new(x, y, z),
+                    chord,
+                    must_nest,
                 };
-                function(i, &cap)
+                function(i, &caps)
             },
         )
     }
@@ -127,18 +142,6 @@ impl<N: Single> Caps<N> {
             greatest,
             typical: ((cosine + both) * 0.5).min(greatest),
         }
-    }
-
-    /// The least ω·n, not negative: zero if some of the cap is below the horizon.
-    #[inline(always)]
-    pub fn least_cosine(&self, normal: Vector3<N>) -> N {
-        (normal.dot(self.axis) - self.chord).max(self.chord.zero())
-    }
-
-    /// The least |ω·a| for a unit vector `axis` = a.
-    #[inline(always)]
-    pub fn least_magnitude(&self, axis: Vector3<N>) -> N {
-        (axis.dot(self.axis).abs() - self.chord).max(self.chord.zero())
     }
 
     /// The least distance ‖ω − u‖ for u in `axes`, and that of both axes.
@@ -168,6 +171,20 @@ impl<N: Single> Caps<N> {
     #[inline(always)]
     pub fn half_vectors(&self, incoming: &Self) -> HalfVectors<N> {
         HalfVectors::of(incoming, self)
+    }
+}
+
+impl Caps<f32> {
+    /// The cap of the only lane.
+    pub fn cap(&self) -> Cap {
+        let Vector3 { x, y, z } = self.axis;
+        match Direction::new(Vec3::new(x, y, z)) {
+            Ok(axis) => Cap {
+                axis,
+                chord: self.chord,
+            },
+            Err(_) => Cap::all(),
+        }
     }
 }
 

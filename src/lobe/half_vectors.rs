@@ -39,6 +39,20 @@
 //! where glass begins to reflect all light, and F is infinitely steep. That serves from [`STEEP_LENGTH`] on, where a
 //! growing chord hardly lessens the cosine of the sum, and rounding could make it greater.
 //!
+//! # Two scales
+//!
+//! On an anisotropic surface the least ‖Px‖ is asked for, where P takes the unit half vector x to two coordinates, and
+//! stretches each. By the Cauchy–Schwarz inequality it is at least d·x/‖g‖ for d = Pᵀg and any g. The cone has
+//! 4x_k² + ‖h‖²x_a² ≤ c², and hence x·h ≥ √(‖h‖² − c²). So, with the unit vector m along h,
+//!
+//! d·x ≥ (d·m)√(1 − c²/‖h‖²) − (c/‖h‖)√(‖d × m‖² − ¼(d·k)²),
+//!
+//! where the last root is √(¼‖h‖²d_k² + d_a²), because ‖k‖² = 4 − ‖h‖². If d·m is negative, so is what is on the right,
+//! and zero is the bound. For the best g this is the distance to the nearest point of an ellipse. With B such that
+//! dᵀBd‖h‖² is the square of that root, and Δ = (PPᵀ)⁻¹, it has d = (B + λΔ)⁻¹m for the λ where dᵀBd = c². Its
+//! inverse root is nearly linear in λ, so one step of Newton's method is enough, from the λ that is right for
+//! multiples of d = Δ⁻¹m. Again any d is safe.
+//!
 //! # Near grazing
 //!
 //! The cone is the flatter the shorter h is, and the root bends more. So x_k² is given the weight
@@ -63,6 +77,11 @@ const SINE_ROUNDINGS: u16 = 16;
 const SQUARED_SINE_ROUNDINGS: u16 = 2 * SINE_ROUNDINGS;
 /// Budget for the length of a half vector in the sine, in units of u.
 const LENGTH_ROUNDINGS: f32 = 20.0;
+/// Budget for a bound of d·x, in units of u times ‖d‖/‖h‖.
+const LINEAR_ROUNDINGS: f32 = 128.0;
+/// The least share of its leading term that the first λ has. Where the ellipse nears the origin, a λ of zero would take
+/// Newton's method far off.
+const LEAST_SHARE: f32 = 1.0 / 1024.0;
 /// Budget for the length of a half vector by a sum of angles, in units of u.
 const SUM_ROUNDINGS: f32 = 64.0;
 /// Twice the cosine of a half angle of 20°. Below, the length by a sum of angles falls by at least a third of what the
@@ -219,6 +238,74 @@ impl<N: Single> HalfVectors<N> {
             (y.abs() - chord).max(zero) * b,
         );
         Real::max(together, alone) / self.lengths[1] * round_down(1.0, SINE_ROUNDINGS)
+    }
+
+    /// As [`least_scaled_sine`](Self::least_scaled_sine) for the reciprocal squares \[p, q\] = `squares`, which are positive,
+    /// and mostly sharper. It does not nest.
+    #[inline(always)]
+    pub fn sharp_scaled_sine(&self, to_frame: &Matrix3<N>, squares: [N; 2]) -> N {
+        let (zero, chord) = (self.chord.zero(), self.chord);
+        let m = *to_frame * self.middle * self.inverse_length;
+        let k = *to_frame * self.difference;
+        let direction = self.towards_nearest(m, k, squares);
+        // Its scale does not matter, but its square may underflow.
+        let [x, y] = direction;
+        let scale = zero.splat(1.0) / x.abs().max(y.abs());
+        let [x, y] = [x * scale, y * scale];
+
+        let squared = x * x + y * y;
+        let across = x * m.y - y * m.x;
+        let along = x * k.x + y * k.y;
+        let cross_squared = squared * (m.z * m.z) + across * across;
+        let width = (cross_squared - along * along * 0.25).max(zero).sqrt();
+        let length = (self.length - LENGTH_ROUNDINGS * UNIT_ROUNDOFF).max(zero);
+        let ratio = chord / length;
+        let cosine = (ratio.one_minus() * (ratio + 1.0)).max(zero).sqrt();
+        let rounding = squared.sqrt() * (LINEAR_ROUNDINGS * UNIT_ROUNDOFF) / length;
+        let least = (x * m.x + y * m.y) * cosine - ratio * width - rounding;
+        let [p, q] = squares;
+        let least = least / (x * x * p + y * y * q).sqrt() * round_down(1.0, SINE_ROUNDINGS);
+        // NaN where there is no d.
+        Real::max(least, zero)
+    }
+
+    /// The d for which the bound of ‖Px‖ is greatest, or nearly so: x and y, of any scale.
+    #[inline(always)]
+    fn towards_nearest(&self, m: Vector3<N>, k: Vector3<N>, [p, q]: [N; 2]) -> [N; 2] {
+        let (zero, inverse_chord) = (self.chord.zero(), self.chord.splat(1.0) / self.chord);
+        let inverse_squared = self.inverse_length * self.inverse_length;
+        let ellipse = [
+            (m.y * m.y + m.z * m.z - k.x * k.x * 0.25) * inverse_squared,
+            -(m.x * m.y + k.x * k.y * 0.25) * inverse_squared,
+            (m.x * m.x + m.z * m.z - k.y * k.y * 0.25) * inverse_squared,
+        ];
+        let times = |[x, y]: [N; 2]| {
+            let [xx, xy, yy] = ellipse;
+            [xx * x + xy * y, xy * x + yy * y]
+        };
+        let dot = |[a, b]: [N; 2], [c, d]: [N; 2]| a * c + b * d;
+        let middle = [m.x, m.y];
+
+        let first = [m.x / p, m.y / q];
+        let squared = dot(first, times(first)).max(zero);
+        let leading = squared.sqrt() * inverse_chord;
+        let multiplier = leading - squared / dot(first, middle);
+        let multiplier = multiplier.max(leading * LEAST_SHARE);
+        let [p, q] = [p * multiplier, q * multiplier];
+        // Of B + λΔ for `share` of the first λ.
+        let solve = |share: N, [x, y]: [N; 2]| {
+            let [xx, xy, yy] = ellipse;
+            let [xx, yy] = [xx + p * share, yy + q * share];
+            let inverse = (xx * yy - xy * xy).recip();
+            [(yy * x - xy * y) * inverse, (xx * y - xy * x) * inverse]
+        };
+        let one = zero.splat(1.0);
+        let second = solve(one, middle);
+        let image = times(second);
+        let squared = dot(second, image).max(zero);
+        let slope = dot(solve(one, image), [p * second[0], q * second[1]]);
+        let step = squared * (squared.sqrt() * inverse_chord - 1.0) / slope;
+        solve(Real::max(step + 1.0, zero), middle)
     }
 }
 

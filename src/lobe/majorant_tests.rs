@@ -28,6 +28,7 @@ fn caps_in_lanes<S: Simd>(simd: S, start: usize, caps: &[Cap; MAX_LANES]) -> Cap
     Caps {
         axis: gathered_vector(simd, start, |i| *caps[i].axis()),
         chord: gathered(simd, start, |i| caps[i].lanes().chord),
+        must_nest: caps[start].lanes().must_nest,
     }
 }
 

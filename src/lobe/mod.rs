@@ -127,6 +127,10 @@ pub trait Lobe {
     /// The narrower the cap, the closer it is to the greatest value there; for a chord of zero it is the value, but
     /// for rounding. Zero if all of the cap is below the horizon. By default it is infinite, which is true of every
     /// lobe and rejects nothing.
+    ///
+    /// Of a lobe of your own it should grow with the cap: of caps that hold each other the greater one should have the
+    /// greater bound. Culling by [receivers](crate::ReceiverCluster) otherwise may reject a light for a block of tiles that
+    /// it would keep for one of them. The lobes of this crate see to that themselves.
     fn maximum_within(&self, _cap: &Cap) -> f32 {
         f32::INFINITY
     }
@@ -213,6 +217,9 @@ pub trait Lobe {
     }
 
     /// Computes the [majorant](Majorant) of one lobe in each lane. `lobe_of` gives that of a lane.
+    ///
+    /// Where the caps say so, it must be no greater than within caps that hold them, but for rounding. By default it is
+    /// [`maximum_within`](Self::maximum_within), which then must nest.
     #[doc(hidden)]
     #[inline(always)]
     fn majorant_in_lanes<'a, N: Single>(
@@ -264,6 +271,6 @@ fn majorant_per_lane<'a, N: Single, L: Lobe + 'a>(
 ) -> Majorant<N> {
     Majorant::exactly(cap.per_lane(
         #[inline(always)]
-        |i, cap| lobe_of(i).map_or(f32::INFINITY, |lobe| lobe.maximum_within(cap)),
+        |i, caps| lobe_of(i).map_or(f32::INFINITY, |lobe| lobe.maximum_within(&caps.cap())),
     ))
 }

@@ -1,9 +1,6 @@
 use glam::Vec3;
 
-use super::{
-    Cap, Caps, FIRST_NUMBERS, Lobe, LobeNumbers, Majorant, majorant_per_lane, padded,
-    value_per_lane,
-};
+use super::{Cap, Caps, FIRST_NUMBERS, Lobe, LobeNumbers, Majorant, padded, value_per_lane};
 use crate::base::{Direction, Error, number_in};
 use crate::num::{Real, Single, Vector3};
 
@@ -99,6 +96,14 @@ impl<A: Lobe, B: Lobe> LobeSum<A, B> {
         (of_second, [numbers[weights], numbers[weights + 1]])
     }
 
+    /// What [`majorant_in_lanes`](Lobe::majorant_in_lanes) computes, of this sum alone.
+    fn majorant(&self, cap: &Caps<f32>) -> Majorant<f32> {
+        let (first, second) = &self.lobes;
+        let of_first = A::majorant_in_lanes(&first.numbers(), |_| Some(first), cap);
+        let of_second = B::majorant_in_lanes(&second.numbers(), |_| Some(second), cap);
+        weighted_majorant([of_first, of_second], self.weights)
+    }
+
     /// What [`mean_in_lanes`](Lobe::mean_in_lanes) computes, of this sum alone.
     fn mean(&self, axis: Vector3<f32>, sharpness: f32) -> f32 {
         let (first, second) = &self.lobes;
@@ -120,9 +125,7 @@ impl<A: Lobe, B: Lobe> Lobe for LobeSum<A, B> {
 
     #[inline]
     fn maximum_within(&self, cap: &Cap) -> f32 {
-        let (first, second) = &self.lobes;
-        let majorants = [first.maximum_within(cap), second.maximum_within(cap)];
-        weighted_majorant(majorants.map(Majorant::exactly), self.weights).greatest
+        self.majorant(&cap.lanes()).greatest
     }
 
     /// That of both lobes if they have the same one, or that of the only one that is not empty.
@@ -203,7 +206,10 @@ impl<A: Lobe, B: Lobe> Lobe for LobeSum<A, B> {
         Self: 'a,
     {
         if !Self::has_numbers() {
-            return majorant_per_lane(lobe_of, cap);
+            return Majorant::exactly(cap.per_lane(
+                #[inline(always)]
+                |i, cap| lobe_of(i).map_or(f32::INFINITY, |sum| sum.majorant(cap).greatest),
+            ));
         }
         let (of_second, weights) = Self::split(numbers);
         let first = A::majorant_in_lanes(

@@ -16,7 +16,8 @@
 //! # Blocks
 //!
 //! The cluster of a block must not reject what a tile of it keeps. In exact arithmetic it does not, since balls, caps
-//! and families nest. For rounding, each step of merging widens the cap by [`MERGE_CHORD_ROUNDINGS`] and raises the
+//! and families nest, and since bounds of lobes that are sharper but do not nest serve clusters of receivers alone, not
+//! those that were merged. For rounding, each step of merging widens the cap by [`MERGE_CHORD_ROUNDINGS`] and raises the
 //! bound by [`MERGE_ROUNDINGS`].
 
 use crate::light::{Roulette, Vpl};
@@ -27,7 +28,7 @@ use crate::view::ReceiverCluster;
 /// Budget for c/δ, beside those of the two majorants.
 const RADIANCE_ROUNDINGS: u16 = 32;
 /// What each merge adds to the chord of a cap, in units of u.
-const MERGE_CHORD_ROUNDINGS: f32 = 96.0;
+const MERGE_CHORD_ROUNDINGS: f32 = 160.0;
 /// What each merge adds to the bound.
 const MERGE_ROUNDINGS: u16 = 512;
 
@@ -130,9 +131,12 @@ impl<F: LobeFamily> ReceiverCluster<F> {
             |squared| (Real::max(squared, least) * delta).min(flux.splat(f32::MAX)),
         );
         let roundings = RADIANCE_ROUNDINGS + MERGE_ROUNDINGS * self.merges();
-        let greatest =
-            (flux * of_light.greatest * of_receivers.greatest / over_delta[0]).round_up(roundings);
+        let sent = flux * of_light.greatest * of_receivers.greatest;
+        let greatest = (sent / over_delta[0]).round_up(roundings);
         let typical = flux * of_light.typical * of_receivers.typical / over_delta[1];
+        // Not NaN where the distance is zero, too.
+        let zero = flux.zero();
+        let [greatest, typical] = N::select_all(sent.is_positive(), [greatest, typical], [zero; 2]);
         Majorant {
             greatest,
             typical: typical.min(greatest),

@@ -144,6 +144,43 @@ fn check<L: Lobe>(name: &str, draw: impl Fn(&mut Rng) -> Drawn<L>) {
     assert!(within <= 1.02, "{name}");
 }
 
+fn check_anisotropic<G: MaskingShadowing>(masking: Masking, fresnel: Fresnel, alpha: f32)
+where
+    AnisotropicGgxLobe<GivenFresnel, G>: Lobe,
+{
+    check(
+        &format!("anisotropic α = {alpha}, {fresnel:?}, {masking:?}"),
+        |rng| {
+            let lit = lit(rng);
+            let other = log_uniform(rng, f64::from(alpha), 1.0).min(1.0) as f32;
+            let roughness = if rng.bool() {
+                [alpha, other]
+            } else {
+                [other, alpha]
+            };
+            let tangent = direction(unit_vector(rng));
+            let member = members::anisotropic_of::<G>((roughness, tangent, fresnel, masking), &lit);
+            let frame = SurfaceFrame::new(lit.surface.normal, member.lobe.tangent());
+            let outgoing = mirrored(rng, &lit, &frame, roughness);
+            Drawn {
+                member,
+                outgoing,
+                facets: Some((fresnel, alpha)),
+            }
+        },
+    );
+}
+
+#[test]
+fn majorants_of_anisotropic_lobes_become_the_lobes() {
+    for alpha in ROUGHNESSES {
+        for fresnel in FRESNELS {
+            check_anisotropic::<HeightCorrelated>(Masking::HeightCorrelated, fresnel, alpha);
+            check_anisotropic::<Separable>(Masking::Separable, fresnel, alpha);
+        }
+    }
+}
+
 #[test]
 fn majorants_of_other_lobes_become_the_lobes() {
     check("Lambert", |rng| {
@@ -163,6 +200,14 @@ fn majorants_of_other_lobes_become_the_lobes() {
             let lit = lit(rng);
             let outgoing = near(rng, lit.surface.normal, width);
             Drawn::new(members::gaussian_of([sharpness, 1.0], &lit), outgoing)
+        });
+        check(&format!("transformed cosine {alpha}"), |rng| {
+            let (lit, share) = (lit(rng), rng.f32());
+            let outgoing = near(rng, lit.surface.mirror().unit(), width);
+            Drawn::new(
+                members::transformed_cosine_of([alpha, share], &lit),
+                outgoing,
+            )
         });
         for fresnel in FRESNELS {
             check(&format!("paint under α = {alpha}, {fresnel:?}"), |rng| {
