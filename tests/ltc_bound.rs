@@ -16,6 +16,7 @@ mod ltc;
 #[path = "../examples/tabulate/ltc_rows.rs"]
 mod ltc_rows;
 
+use ltc_rows::Place;
 use ltc_rows::layout::{NUMBERS, PLACES};
 
 const TABLE: &[u8] = include_bytes!("../src/bound/ltc_rows.bin");
@@ -109,19 +110,17 @@ fn rows_hold_for_directions_and_are_no_larger_than_need_be() {
 /// `examples/tabulate -- --ltc-bound` makes the whole.
 #[test]
 fn rows_are_reproduced() {
-    let rows = rows();
-    let lobes = ltc_rows::lobes();
-    for chosen in [lobes[40], lobes[lobes.len() / 2]] {
-        let place = ltc_rows::place(chosen);
-        let here: Vec<_> = lobes
-            .iter()
-            .copied()
-            .filter(|lobe| ltc_rows::place(*lobe) == place)
-            .collect();
+    let (rows, coarse) = (rows(), ltc_rows::coarse_places());
+    for i in [30, coarse.len() - 20] {
+        assert_eq!(ltc_rows::row(&coarse[i]), rows[i], "row {i}");
+    }
+    for place in Place::all().iter().step_by(17) {
+        let (best, _) = place.best(&rows);
         assert_eq!(
-            ltc_rows::row(&here),
-            rows[usize::from(TABLE[place])],
-            "place {place}"
+            best,
+            usize::from(TABLE[place.index]),
+            "place {}",
+            place.index
         );
     }
 }

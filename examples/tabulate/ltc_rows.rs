@@ -1,6 +1,10 @@
-//! Chooses the inequalities behind the bound of transformed cosines: for each step of m₁₁ and m₁₁|b| the one whose
-//! ellipsoids are smallest around the lobes of the table that have such an M. The notation is that of the bound.
+//! Chooses the inequalities behind the bound of transformed cosines: for each step of m₁₁ and m₁₁|b| one whose ellipsoids
+//! are small around the lobes of the table that have such an M. The notation is that of the bound.
+//!
+//! Each inequality holds for any M. So they are made for coarse places, of two steps by two, and each place takes the
+//! best of all. Then the places where even that is worst get inequalities of their own, as many as a byte can count.
 
+use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use rayon::prelude::*;
@@ -20,13 +24,15 @@ pub mod layout;
 const FINENESS: usize = 2;
 /// The most lobes that a choice is made for.
 const LOBES: usize = 24;
+/// The most rows that a byte can count.
+const MOST_ROWS: usize = 256;
 /// Intervals of the proof while choosing, and of what is chosen.
-const INTERVALS: [u32; 2] = [300, 20_000];
-const ITERATIONS: u64 = 300;
+const INTERVALS: [u32; 2] = [1_000, 20_000];
+const ITERATIONS: u64 = 600;
 /// The largest share that keeps Q away from singular.
 const LARGEST_SHARE: f64 = 0.9;
 /// The least ν that is chosen.
-const LEAST_NU: f64 = 1e-3;
+const LEAST_NU: f64 = 1e-7;
 /// The largest angle of incidence, in degrees.
 const MOST_DEGREES: f64 = 89.9;
 
@@ -36,25 +42,31 @@ pub type Sizes = [f64; 3];
 /// A row before rounding: α₁, α₂, ln ν, the angle of û and the share of α₃.
 type Choice = [f64; 5];
 
+/// A row as it is stored.
+type Row = [f32; layout::NUMBERS];
+
 /// The bytes of the table.
 pub fn table() -> Vec<u8> {
-    let mut groups = vec![Vec::new(); layout::PLACES];
-    for sizes in lobes() {
-        groups[place(sizes)].push(sizes);
-    }
-    let places: Vec<usize> = (0..layout::PLACES)
-        .filter(|i| !groups[*i].is_empty())
+    let places = Place::all();
+    let coarse = coarse_places();
+    let mut rows: Vec<Row> = coarse.par_iter().map(|lobes| row(lobes)).collect();
+    let mut worst: Vec<_> = places
+        .par_iter()
+        .map(|place| (place, place.best(&rows).1))
         .collect();
-    let rows: Vec<_> = places.par_iter().map(|i| row(&groups[*i])).collect();
+    worst.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+    worst.truncate(MOST_ROWS - rows.len());
+    rows.par_extend(worst.into_par_iter().map(|(place, _)| row(&place.lobes)));
+    let best: Vec<usize> = places.par_iter().map(|place| place.best(&rows).0).collect();
     // Where there are no lobes, the row of the nearest place that has some.
-    let [x, y] = [
-        |i: usize| (i / layout::STEPS) as f64,
-        |i: usize| (i % layout::STEPS) as f64,
-    ];
-    let nearest = |i: usize| {
-        let distance = |at: usize| (x(i) - x(at)).powi(2) + (y(i) - y(at)).powi(2);
-        let order = |a: &usize, b: &usize| distance(places[*a]).total_cmp(&distance(places[*b]));
-        (0..places.len()).min_by(order).expect("there are lobes") as u8
+    let nearest = |index: usize| {
+        let [x, y] = steps(index);
+        let distance = |place: &Place| {
+            let [other_x, other_y] = steps(place.index);
+            x.abs_diff(other_x).pow(2) + y.abs_diff(other_y).pow(2)
+        };
+        let nearest = (0..places.len()).min_by_key(|i| distance(&places[*i]));
+        best[nearest.expect("there are lobes")] as u8
     };
     let indices = (0..layout::PLACES).map(nearest);
     indices
@@ -62,13 +74,76 @@ pub fn table() -> Vec<u8> {
         .collect()
 }
 
+/// The lobes of each coarse place that has some. Each group has a row, in this order, before all others.
+pub fn coarse_places() -> Vec<Vec<Sizes>> {
+    let mut coarse = BTreeMap::new();
+    for sizes in lobes() {
+        let key = steps(place(sizes)).map(|step| step / 2);
+        coarse.entry(key).or_insert_with(Vec::new).push(sizes);
+    }
+    coarse.into_values().collect()
+}
+
+/// The steps of m₁₁ and of m₁₁|b| at a place.
+fn steps(index: usize) -> [usize; 2] {
+    [index / layout::STEPS, index % layout::STEPS]
+}
+
+/// A place of the table that has lobes.
+pub struct Place {
+    pub index: usize,
+    pub lobes: Vec<Sizes>,
+}
+
+impl Place {
+    /// All of them.
+    pub fn all() -> Vec<Self> {
+        let mut groups = BTreeMap::new();
+        for sizes in lobes() {
+            let group = groups.entry(place(sizes));
+            group.or_insert_with(Vec::new).push(sizes);
+        }
+        let places = groups.into_iter();
+        places.map(|(index, lobes)| Self { index, lobes }).collect()
+    }
+
+    /// The row that is best for the lobes, and the worst quotient of volumes with it.
+    pub fn best(&self, rows: &[Row]) -> (usize, f64) {
+        let lobes = some_of(&self.lobes);
+        let worst = |row: &Row| {
+            let [alpha_1, alpha_2, sine, cosine, nu, q, share] = row.map(f64::from);
+            let inequality = LtcInequality {
+                alpha_1,
+                alpha_2,
+                sine,
+                cosine,
+                nu,
+            };
+            let ratio =
+                |(sizes, smallest): &(Sizes, f64)| volume(*sizes, &inequality, q, share) / smallest;
+            lobes.iter().map(ratio).fold(0.0, f64::max)
+        };
+        let ratios = rows.iter().map(worst).enumerate();
+        ratios
+            .min_by(|(_, a), (_, b)| a.total_cmp(b))
+            .expect("there are rows")
+    }
+}
+
+/// Up to [`LOBES`] of these, each with the volume of the smallest ellipsoid.
+fn some_of(lobes: &[Sizes]) -> Vec<(Sizes, f64)> {
+    let count = lobes.len().min(LOBES);
+    let chosen = (0..count).map(|i| lobes[i * lobes.len() / count]);
+    chosen.map(|sizes| (sizes, smallest(sizes))).collect()
+}
+
 /// The place of M in the table.
-pub fn place([along, _, slant]: Sizes) -> usize {
+fn place([along, _, slant]: Sizes) -> usize {
     layout::place(along as f32, slant as f32)
 }
 
 /// The lobes at the knots of their table and between, up to [`MOST_DEGREES`].
-pub fn lobes() -> Vec<Sizes> {
+fn lobes() -> Vec<Sizes> {
     let last = FINENESS * (table::KNOTS - 1);
     let most = (1.0 - MOST_DEGREES.to_radians().cos()).sqrt();
     let mut lobes = Vec::new();
@@ -91,12 +166,9 @@ fn sizes(alpha: f64, [a, b, d, e]: Elements) -> Sizes {
 }
 
 /// The row for these lobes.
-pub fn row(lobes: &[Sizes]) -> [f32; layout::NUMBERS] {
-    let count = lobes.len().min(LOBES);
-    let chosen: Vec<(Sizes, f64)> = (0..count)
-        .map(|i| lobes[i * lobes.len() / count])
-        .map(|sizes| (sizes, smallest(sizes)))
-        .collect();
+pub fn row(lobes: &[Sizes]) -> Row {
+    let chosen = some_of(lobes);
+    let count = chosen.len();
     let cost = |choice: &[f64]| {
         let choice = [choice[0], choice[1], choice[2], choice[3], choice[4]];
         let Some(inequality) = inequality(choice) else {
@@ -118,6 +190,9 @@ pub fn row(lobes: &[Sizes]) -> [f32; layout::NUMBERS] {
             [1.0, 0.09, nu(0.01), 0.7 * tilt, 0.4],
             [narrow, 0.05, nu(0.01), 0.95 * tilt, 0.3],
             [0.9, 0.02, nu(0.1), 0.1, 0.3],
+            [narrow, 0.02, nu(1e-4), 0.97 * tilt, 0.4],
+            [1.3, 0.05, nu(0.05), 0.0, 0.5],
+            [narrow, 0.002, nu(0.1), 0.5 * tilt, 0.5],
         ] {
             let mut found = start.to_vec();
             for size in [1.0, 0.3] {
@@ -155,7 +230,7 @@ fn inequality([alpha_1, alpha_2, log_nu, angle, share]: Choice) -> Option<LtcIne
 }
 
 /// The row as it is stored, with a q that is proved for the rounded numbers.
-fn rounded(choice: Choice) -> [f32; layout::NUMBERS] {
+fn rounded(choice: Choice) -> Row {
     let exact = inequality(choice).expect("the best choice is in range");
     let [alpha_1, alpha_2, sine, cosine, nu] = [
         exact.alpha_1,

@@ -54,9 +54,9 @@ use crate::num::{Double, Single, Vector3};
 
 /// Pays for the rounding of K and of its product with a semi-axis.
 const SEMI_AXIS_ROUNDINGS: u16 = 8;
+
 /// Bounds the lobe by an ellipsoid, with its part below the horizon. The volume is on average 1.03 times that
-/// of the smallest around the isosurface, at most 1.1 times that up to 85°, and 1.15 times beyond, or 1.35 times
-/// for α < 0.01.
+/// of the smallest around the isosurface, at most 1.1 times that up to 88°, and 1.2 times beyond.
 impl BoundStrategy<LtcLobe> for Tight {
     type Shape = Ellipsoid;
 

@@ -4,15 +4,15 @@
 //! M; the choice only matters to the volume.
 
 /// The number of steps along each of two coordinates.
-pub(crate) const STEPS: usize = 28;
+pub(crate) const STEPS: usize = 56;
 /// The steps to a doubling, as a power of two.
-const STEPS_OF_TWO: u32 = 2;
+const STEPS_OF_TWO: u32 = 3;
 
 /// The numbers of a row: α₁, α₂, the components of û along e₁ and e₃, ν, q, and the largest share of 1/T and
 /// 1/m₂₂² that α₃ takes.
 pub(crate) const NUMBERS: usize = 7;
 
-/// The index of a row for each place, then the rows.
+/// The index of a row for each place, then the rows: 10 kB.
 const BYTES: &[u8] = include_bytes!("ltc_rows.bin");
 pub(crate) const PLACES: usize = STEPS * STEPS;
 const ROWS: usize = (BYTES.len() - PLACES) / (4 * NUMBERS);
