@@ -278,6 +278,18 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
     }
 
     #[inline(always)]
+    fn is_fainter_in_lanes<N: Single>(
+        numbers: &LobeNumbers<N>,
+        flux: N,
+        way: Vector3<N>,
+        length_squared: N,
+        least: N,
+    ) -> Option<N::Mask> {
+        let (lobes, _) = GgxLobes::from_numbers(numbers);
+        Some(lobes.is_fainter(flux, way, length_squared, least))
+    }
+
+    #[inline(always)]
     fn majorant_in_lanes<'a, N: Single>(
         numbers: &LobeNumbers<N>,
         lobe_of: impl Fn(usize) -> Option<&'a Self>,

@@ -15,6 +15,7 @@ mod fresnel;
 mod gaussian_family;
 mod gaussian_fit;
 mod ggx;
+mod ggx_faint;
 mod ggx_family;
 mod ggx_lobe;
 mod ggx_lobes;

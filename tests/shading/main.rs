@@ -14,6 +14,7 @@ use support::{
 };
 
 mod clusters;
+mod faint;
 mod frame;
 mod receivers;
 mod scalar;
