@@ -194,3 +194,69 @@ fn scales_are_in_their_range() {
         assert!(matches!(error, Error::Number { .. }), "{least} {most}");
     }
 }
+
+#[test]
+fn a_tile_in_the_middle_has_the_least_scale() {
+    let mut rng = fastrand::Rng::with_seed(5);
+    for _ in 0..2_000 {
+        // Brightnesses of pictures, from all alike to those of mirrors, and tiles that show nothing among them.
+        let contrast = 1.0 + 6.0 * rng.f32();
+        let shown: Vec<f32> = (0..rng.usize(1..200))
+            .map(|_| 3.0 * (-contrast * rng.f32()).exp())
+            .collect();
+        let dark = [0.0, -0.0, -2.0, f32::NEG_INFINITY, f32::NAN, -f32::NAN];
+        let mut tiles = shown.clone();
+        tiles.extend((0..rng.usize(0..300)).map(|_| dark[rng.usize(0..dark.len())]));
+        rng.shuffle(&mut tiles);
+        let even = EvenNoise::of_tiles(&mut tiles).unwrap();
+
+        let mut sorted = shown.clone();
+        sorted.sort_by(f32::total_cmp);
+        let mean = shown.iter().map(|l| f64::from(*l)).sum::<f64>() / shown.len() as f64;
+        let near = |a: f32, b: f64| (f64::from(a) / b - 1.0).abs() < 1e-6;
+        assert!(near(even.typical(), mean));
+        let median = f64::from(sorted[sorted.len() / 2]);
+        let [least, most] = even.range();
+        assert!(near(least, (median / mean).min(1.0)) && most == 64.0);
+        // Darker ones have the same, and brighter ones are in proportion.
+        let scales: Vec<f32> = sorted.iter().map(|l| even.delta_scale(*l)).collect();
+        assert!(scales.is_sorted());
+        for (radiance, scale) in sorted.iter().zip(&scales) {
+            let own = (f64::from(*radiance) / mean).min(64.0);
+            assert!(near(*scale, own.max(f64::from(least))), "{radiance}");
+        }
+        // In whichever order.
+        tiles.reverse();
+        assert_eq!(EvenNoise::of_tiles(&mut tiles), Ok(even));
+    }
+}
+
+#[test]
+fn tiles_of_any_radiance_give_a_scale_or_an_error() {
+    let of_tiles = |radiances: &[f32]| {
+        let even = EvenNoise::of_tiles(&mut radiances.to_vec())?;
+        Ok::<_, Error>((even.typical(), even.range()[0]))
+    };
+    let (nan, tiny) = (f32::NAN, f32::MIN_POSITIVE);
+    // One tile, and of two the brighter one.
+    assert_eq!(of_tiles(&[0.3]), Ok((0.3, 1.0)));
+    assert_eq!(of_tiles(&[nan, 0.3, 0.0]), Ok((0.3, 1.0)));
+    assert_eq!(of_tiles(&[1.0, 3.0]), Ok((2.0, 1.0)));
+    assert_eq!(of_tiles(&[1.0, 7.0, 1.0]), Ok((3.0, 1.0 / 3.0)));
+    // A sum that single precision cannot hold, and a median that is nothing beside it.
+    assert_eq!(of_tiles(&[f32::MAX; 4]), Ok((f32::MAX, 1.0)));
+    let black = 1.0 / 4096.0;
+    assert_eq!(of_tiles(&[tiny, 3.0, tiny]), Ok((1.0, black)));
+    assert_eq!(of_tiles(&[f32::from_bits(1), 3.0, tiny]), Ok((1.0, black)));
+    for nothing in [
+        &[] as &[f32],
+        &[nan],
+        &[0.0, -0.0, -1.0, nan],
+        &[f32::NEG_INFINITY],
+        &[f32::INFINITY, 1.0],
+        &[tiny, f32::from_bits(1)],
+    ] {
+        let error = of_tiles(nothing).unwrap_err();
+        assert!(matches!(error, Error::Number { .. }), "{nothing:?}");
+    }
+}

@@ -1,5 +1,10 @@
+use core::cmp::Ordering;
+
 use crate::base::{Error, number_in};
 use crate::num::Real;
+
+/// The least scale that [`EvenNoise::of_tiles`] gives: twelve stops below the mean, which is black beside it.
+const LEAST_OF_TILES: f32 = 1.0 / 4096.0;
 
 /// The scale of δ of a tile that makes noise even to the eye: δ in proportion to the brightness of the tile.
 ///
@@ -35,6 +40,13 @@ use crate::num::Real;
 /// // However dark, and if nothing is known.
 /// assert_eq!(even.delta_scale(0.0), 1.0 / 64.0);
 /// assert_eq!(even.delta_scale(f32::NAN), 1.0);
+///
+/// // By the tiles of a frame before, one of which has shown nothing.
+/// let shown = [0.02, 3.9, 0.04, 0.03, f32::NAN, 0.01];
+/// let even = EvenNoise::of_tiles(&mut shown.clone())?;
+/// // Their mean is 0.8, and half of them show 0.03 or less.
+/// assert!((even.delta_scale(0.04) - 0.05).abs() < 1e-6);
+/// assert_eq!(even.delta_scale(0.01), even.delta_scale(0.03));
 /// # Ok::<(), stochastic_light_culling::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +61,8 @@ impl EvenNoise {
     /// of a picture does, if it is one of frames long ago, or of another seed; where most of it is dark, the radiance of
     /// its median tile.
     ///
-    /// Scales are in \[1/64, 64\], unless [another range](Self::with_range) is set.
+    /// Scales are in \[1/64, 64\], unless [another range](Self::with_range) is set. [`of_tiles`](Self::of_tiles) finds L₀
+    /// and the least scale.
     ///
     /// # Errors
     ///
@@ -61,6 +74,34 @@ impl EvenNoise {
             least: 1.0 / 64.0,
             most: 64.0,
         })
+    }
+
+    /// Scales δ by the radiance of a tile over the mean of these `radiances`, one of each tile, down to the scale of the
+    /// median tile: all that are darker have that one, too.
+    ///
+    /// δ in proportion to L gives a dark tile as many lights as a bright one, or far more, where little of what arrives
+    /// is reflected to the eye. So there has to be a least scale. By that of the median tile, noise is even in the brighter
+    /// half of the picture, and in the other half the relative deviation grows as 1/√L. No fixed one fits all materials:
+    /// the median of diffuse surfaces may be a thirtieth of the mean, and that of mirrors a thousandth.
+    ///
+    /// Tiles of no radiance, or less, or NaN have shown nothing, and are left out. Of an even number the median is the
+    /// brighter one in the middle. Tiles count alike: give those of about as many pixels, or some of them as often as they
+    /// have these. The least scale is in \[1/4096, 1\], and the greatest is 64. The slice is left in another order.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Number`] if the mean is infinite or subnormal, or if no tile has shown anything.
+    pub fn of_tiles(radiances: &mut [f32]) -> Result<Self, Error> {
+        let (mut sum, mut count) = (0.0_f64, 0_usize);
+        for radiance in radiances.iter().filter(|radiance| **radiance > 0.0) {
+            sum += f64::from(*radiance);
+            count += 1;
+        }
+        let even = Self::new((sum / count.max(1) as f64) as f32)?;
+        // There is one, or the mean would be zero.
+        let (_, median, _) = radiances.select_nth_unstable_by(count / 2, dark_first);
+        let least = Real::max(*median / even.typical, LEAST_OF_TILES);
+        even.with_range(Real::min(least, 1.0), even.most)
     }
 
     /// Returns this with scales of at least `least` and at most `most`. The least one limits the work in the dark: a
@@ -103,4 +144,12 @@ impl EvenNoise {
         let scale = radiance / self.typical;
         Real::min(Real::max(scale, self.least), self.most)
     }
+}
+
+/// The order by radiance, with tiles that have shown nothing last.
+fn dark_first(a: &f32, b: &f32) -> Ordering {
+    let place = |radiance: f32| {
+        if radiance > 0.0 { radiance } else { f32::NAN }
+    };
+    place(*a).total_cmp(&place(*b))
 }

@@ -57,6 +57,13 @@ pub fn others(bits: &mut Bits, cameras: &[AnyCamera]) {
             let (scale, [least, most]) = (even.delta_scale(bits.number()), even.range());
             assert!(least <= scale && scale <= most, "{scale}");
         }
+        let mut radiances = [(); 4].map(|()| bits.number());
+        if let Ok(even) = EvenNoise::of_tiles(&mut radiances) {
+            probe::saved(&even);
+            let [least, most] = even.range();
+            assert!(even.typical().is_normal() && (1.0 / 4096.0..=1.0).contains(&least));
+            assert_eq!(most, 64.0);
+        }
         let _ = (Vpl::point(bits.vector(), bits.number()), bits.number());
     }
     gaussians(bits, cameras);

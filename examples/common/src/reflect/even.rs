@@ -58,17 +58,19 @@ impl Shown {
     /// δ of each slot over that of the frame. Random numbers of that frame must be of another seed than those of the frames
     /// here.
     pub fn delta_scales(&self) -> Vec<f32> {
-        let add =
-            |[sum, pixels]: [f64; 2], [more, others]: &[f64; 2]| [sum + more, pixels + others];
-        let mean = |[radiance, pixels]: [f64; 2]| (radiance / pixels) as f32;
-        let all = self.sums.iter().fold([0.0; 2], add);
-        // Black frames tell nothing.
-        let even = EvenNoise::new(mean(all));
-        let scale = |sums: &[f64; 2]| match &even {
-            // Where nothing is seen yet, more lights would be for nothing.
-            Ok(even) if sums[0] > 0.0 => even.delta_scale(mean(*sums)),
-            _ => 1.0,
+        // Where nothing is seen yet, more lights would be for nothing.
+        let mean = |[radiance, pixels]: &[f64; 2]| {
+            let is_seen = *radiance > 0.0;
+            if is_seen {
+                (radiance / pixels) as f32
+            } else {
+                f32::NAN
+            }
         };
-        self.sums.iter().map(scale).collect()
+        let radiances: Vec<f32> = self.sums.iter().map(mean).collect();
+        // Black frames tell nothing.
+        let even = EvenNoise::of_tiles(&mut radiances.clone());
+        let scale = |radiance| even.as_ref().map_or(1.0, |even| even.delta_scale(radiance));
+        radiances.into_iter().map(scale).collect()
     }
 }

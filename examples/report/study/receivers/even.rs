@@ -53,9 +53,9 @@ pub fn against_time(subjects: &[Subject], all: &[Measured]) -> Study {
     }
     Study {
         name: "receivers_even",
-        caption: "A δ for each tile, in proportion to what the tile showed in the frames before, of other seeds, beside one \
-                  δ for all. Down and to the left is better; along a curve δ falls. At about 1 the median pixel has no light at \
-                  all. Bars are 95 % confidence. The table has the error with one δ in the same time.",
+        caption: "A δ for each tile, in proportion to what the tile showed in the frames before, of other seeds, down to the \
+                  δ of the median tile, beside one for all. Down and to the left is better; along a curve δ falls. At about 1 \
+                  the median pixel has no light at all. Bars are 95 % confidence. The table has the error with one δ in the same time.",
         sheet,
         summary: None,
         picture: None,
