@@ -16,8 +16,8 @@ mod ltc;
 #[path = "../examples/tabulate/ltc_rows.rs"]
 mod ltc_rows;
 
-use ltc_rows::Place;
 use ltc_rows::layout::{NUMBERS, PLACES};
+use ltc_rows::{FINENESS, Place};
 
 const TABLE: &[u8] = include_bytes!("../src/bound/ltc_rows.bin");
 
@@ -32,15 +32,9 @@ fn rows() -> Vec<[f32; NUMBERS]> {
 
 /// The inequality of a row, and its q.
 fn inequality(row: [f32; NUMBERS]) -> (LtcInequality, f64) {
-    let [alpha_1, alpha_2, sine, cosine, nu, q, _] = row.map(f64::from);
-    let inequality = LtcInequality {
-        alpha_1,
-        alpha_2,
-        sine,
-        cosine,
-        nu,
-    };
-    (inequality, q)
+    let [alpha_1, alpha_2, sine, cosine, nu, q, _] = row;
+    let inequality = LtcInequality::from_numbers([alpha_1, alpha_2, sine, cosine, nu]);
+    (inequality, q.into())
 }
 
 #[test]
@@ -114,14 +108,10 @@ fn rows_are_reproduced() {
     for i in [30, coarse.len() - 20] {
         assert_eq!(ltc_rows::row(&coarse[i]), rows[i], "row {i}");
     }
-    for place in Place::all().iter().step_by(17) {
-        let (best, _) = place.best(&rows);
-        assert_eq!(
-            best,
-            usize::from(TABLE[place.index]),
-            "place {}",
-            place.index
-        );
+    let places = Place::all(FINENESS[1]);
+    for place in places.iter().step_by(17) {
+        let (best, index) = (place.best(&rows).0, place.index);
+        assert_eq!(best, usize::from(TABLE[index]), "place {index}");
     }
 }
 

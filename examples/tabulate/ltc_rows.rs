@@ -20,8 +20,9 @@ use crate::ltc::{Elements, layout as table, minimum};
 #[path = "../../src/bound/ltc_rows.rs"]
 pub mod layout;
 
-/// Lobes between two knots of the table along each coordinate.
-const FINENESS: usize = 2;
+/// Lobes between two knots of the table along each coordinate, for which rows are made, and among which each place takes
+/// the best one. Near grazing incidence lobes between two knots are of many places.
+pub const FINENESS: [usize; 2] = [2, 16];
 /// The most lobes that a choice is made for.
 const LOBES: usize = 24;
 /// The most rows that a byte can count.
@@ -47,7 +48,7 @@ type Row = [f32; layout::NUMBERS];
 
 /// The bytes of the table.
 pub fn table() -> Vec<u8> {
-    let places = Place::all();
+    let places = Place::all(FINENESS[0]);
     let coarse = coarse_places();
     let mut rows: Vec<Row> = coarse.par_iter().map(|lobes| row(lobes)).collect();
     let mut worst: Vec<_> = places
@@ -57,7 +58,15 @@ pub fn table() -> Vec<u8> {
     worst.sort_by(|(_, a), (_, b)| b.total_cmp(a));
     worst.truncate(MOST_ROWS - rows.len());
     rows.par_extend(worst.into_par_iter().map(|(place, _)| row(&place.lobes)));
-    let best: Vec<usize> = places.par_iter().map(|place| place.best(&rows).0).collect();
+    let indices = indices(&rows);
+    let numbers = rows.into_iter().flatten().flat_map(f32::to_le_bytes);
+    indices.into_iter().chain(numbers).collect()
+}
+
+/// The index of the best row for each place.
+fn indices(rows: &[Row]) -> Vec<u8> {
+    let places = Place::all(FINENESS[1]);
+    let best: Vec<usize> = places.par_iter().map(|place| place.best(rows).0).collect();
     // Where there are no lobes, the row of the nearest place that has some.
     let nearest = |index: usize| {
         let [x, y] = steps(index);
@@ -68,16 +77,13 @@ pub fn table() -> Vec<u8> {
         let nearest = (0..places.len()).min_by_key(|i| distance(&places[*i]));
         best[nearest.expect("there are lobes")] as u8
     };
-    let indices = (0..layout::PLACES).map(nearest);
-    indices
-        .chain(rows.into_iter().flatten().flat_map(f32::to_le_bytes))
-        .collect()
+    (0..layout::PLACES).map(nearest).collect()
 }
 
 /// The lobes of each coarse place that has some. Each group has a row, in this order, before all others.
 pub fn coarse_places() -> Vec<Vec<Sizes>> {
     let mut coarse = BTreeMap::new();
-    for sizes in lobes() {
+    for sizes in lobes(FINENESS[0]) {
         let key = steps(place(sizes)).map(|step| step / 2);
         coarse.entry(key).or_insert_with(Vec::new).push(sizes);
     }
@@ -96,10 +102,10 @@ pub struct Place {
 }
 
 impl Place {
-    /// All of them.
-    pub fn all() -> Vec<Self> {
+    /// All of them, for this many lobes between two knots.
+    pub fn all(fineness: usize) -> Vec<Self> {
         let mut groups = BTreeMap::new();
-        for sizes in lobes() {
+        for sizes in lobes(fineness) {
             let group = groups.entry(place(sizes));
             group.or_insert_with(Vec::new).push(sizes);
         }
@@ -111,16 +117,11 @@ impl Place {
     pub fn best(&self, rows: &[Row]) -> (usize, f64) {
         let lobes = some_of(&self.lobes);
         let worst = |row: &Row| {
-            let [alpha_1, alpha_2, sine, cosine, nu, q, share] = row.map(f64::from);
-            let inequality = LtcInequality {
-                alpha_1,
-                alpha_2,
-                sine,
-                cosine,
-                nu,
+            let [alpha_1, alpha_2, sine, cosine, nu, q, share] = *row;
+            let inequality = LtcInequality::from_numbers([alpha_1, alpha_2, sine, cosine, nu]);
+            let ratio = |(sizes, smallest): &(Sizes, f64)| {
+                volume(*sizes, &inequality, q.into(), share.into()) / smallest
             };
-            let ratio =
-                |(sizes, smallest): &(Sizes, f64)| volume(*sizes, &inequality, q, share) / smallest;
             lobes.iter().map(ratio).fold(0.0, f64::max)
         };
         let ratios = rows.iter().map(worst).enumerate();
@@ -143,8 +144,8 @@ fn place([along, _, slant]: Sizes) -> usize {
 }
 
 /// The lobes at the knots of their table and between, up to [`MOST_DEGREES`].
-fn lobes() -> Vec<Sizes> {
-    let last = FINENESS * (table::KNOTS - 1);
+fn lobes(fineness: usize) -> Vec<Sizes> {
+    let last = fineness * (table::KNOTS - 1);
     let most = (1.0 - MOST_DEGREES.to_radians().cos()).sqrt();
     let mut lobes = Vec::new();
     for i in 1..=last {
@@ -232,7 +233,7 @@ fn inequality([alpha_1, alpha_2, log_nu, angle, share]: Choice) -> Option<LtcIne
 /// The row as it is stored, with a q that is proved for the rounded numbers.
 fn rounded(choice: Choice) -> Row {
     let exact = inequality(choice).expect("the best choice is in range");
-    let [alpha_1, alpha_2, sine, cosine, nu] = [
+    let numbers = [
         exact.alpha_1,
         exact.alpha_2,
         exact.sine,
@@ -240,13 +241,8 @@ fn rounded(choice: Choice) -> Row {
         exact.nu,
     ]
     .map(|x| x as f32);
-    let stored = LtcInequality {
-        alpha_1: alpha_1.into(),
-        alpha_2: alpha_2.into(),
-        sine: sine.into(),
-        cosine: cosine.into(),
-        nu: nu.into(),
-    };
+    let stored = LtcInequality::from_numbers(numbers);
+    let [alpha_1, alpha_2, sine, cosine, nu] = numbers;
     // The next larger number, for it was rounded to the nearest.
     let q = f32::from_bits((stored.proved_q(INTERVALS[1]) as f32).to_bits() + 1);
     [alpha_1, alpha_2, sine, cosine, nu, q, choice[4] as f32]

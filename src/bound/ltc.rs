@@ -56,7 +56,8 @@ use crate::num::{Double, Single, Vector3};
 const SEMI_AXIS_ROUNDINGS: u16 = 8;
 
 /// Bounds the lobe by an ellipsoid, with its part below the horizon. The volume is on average 1.03 times that
-/// of the smallest around the isosurface, at most 1.1 times that up to 88°, and 1.2 times beyond.
+/// of the smallest around the isosurface, at most 1.1 times that at the knots of the lobes' table, up to 88°, and 1.2
+/// times between and beyond.
 impl BoundStrategy<LtcLobe> for Tight {
     type Shape = Ellipsoid;
 

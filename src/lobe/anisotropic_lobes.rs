@@ -76,7 +76,8 @@ pub(super) fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
     )
 }
 
-/// A lower bound of √(x²(1/α_x² − 1) + y²(1/α_y² − 1)) for the unit vectors (x, y, z) along the half vectors.
+/// A lower bound of √(x²(1/α_x² − 1) + y²(1/α_y² − 1)) for the unit vectors (x, y, z) along the half vectors: sharp unless it
+/// must nest.
 #[inline(always)]
 fn least_scaled_sine<N: Single>(
     half_vectors: &HalfVectors<N>,
@@ -106,7 +107,8 @@ fn least_scaled_sine<N: Single>(
     Real::max(sharp, sine)
 }
 
-/// A lower bound of √(α_x²x² + α_y²y²)/√(x² + y²) for the directions (x, y, z) of a cap.
+/// A lower bound of √(α_x²x² + α_y²y²)/√(x² + y²) for the directions (x, y, z) of a cap. It nests, since |x| − c and
+/// √(x² + y²) + c do.
 #[inline(always)]
 fn least_roughness<N: Single>(
     [along, across]: [N; 2],

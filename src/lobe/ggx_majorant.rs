@@ -30,10 +30,10 @@
 //! # It nests
 //!
 //! Let n′, i′, w′ and their chords be those of a greater pair: c′_n ≥ ‖n′ − n‖ + c_n, and so on. Then
-//! ‖h′ − h‖ ≤ c′ − c. Hence L′ ≥ L, and the least cosθ_h is no greater. The cone of the greater pair holds that of the lesser, so
-//! s₀′ ≤ s₀ + ‖n′ − n‖, and s′ ≤ s. In the same way m′ ≥ m, and a chord that is clamped to 2 makes s′ zero and m′ one.
-//! D̂ is a maximum over a set that grows with the family, of a function that falls with s; F̂ and the bound of G2 are
-//! monotonic in all of their numbers. So the majorant of the greater pair is at least that of the lesser.
+//! ‖h′ − h‖ ≤ c′ − c. Hence L′ ≥ L, and the least cosθ_h is no greater. The cone of the greater pair holds that of the
+//! lesser, so s₀′ ≤ s₀ + ‖n′ − n‖, and s′ ≤ s. In the same way m′ ≥ m, and a chord that is clamped to 2 makes s′ zero and
+//! m′ one. D̂ is a maximum over a set that grows with the family, of a function that falls with s; F̂ and the bound of G2
+//! are monotonic in all of their numbers. So the majorant of the greater pair is at least that of the lesser.
 //!
 //! # The typical value
 //!

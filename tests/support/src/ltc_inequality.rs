@@ -17,6 +17,18 @@ pub struct LtcInequality {
 }
 
 impl LtcInequality {
+    /// The inequality of these numbers, as a table stores them: α₁, α₂, the sine and the cosine of û, and ν.
+    pub fn from_numbers(numbers: [f32; 5]) -> Self {
+        let [alpha_1, alpha_2, sine, cosine, nu] = numbers.map(f64::from);
+        Self {
+            alpha_1,
+            alpha_2,
+            sine,
+            cosine,
+            nu,
+        }
+    }
+
     /// A q for which it holds, proved in intervals of the angle δ between û and ω, so many of them. More
     /// intervals give a smaller one. α₁ must be positive, α₂ not negative, and ν in (0, 1].
     ///
