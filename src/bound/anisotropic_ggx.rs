@@ -49,7 +49,7 @@
 //! ellipsoids is used; for α_x = α_y it is always the isotropic one.
 
 use super::ellipsoid::Ellipsoids;
-use super::principal_axes::{ellipsoids_along, principal_axes};
+use super::principal_axes::{POINT_ROUNDINGS, ellipsoids_along, principal_axes};
 use super::shape::{Quads, padded};
 use super::triaxial::{ellipsoids_around, ndf_radius_squared};
 use super::{BoundStrategy, Bounded, Ellipsoid, Triaxial};
@@ -184,7 +184,8 @@ impl<D: Double> Incidence<D> {
             [a.y, b.y, c.y, d.y, e.y],
             [a.z, b.z, c.z, d.z, e.z],
         ]);
-        ellipsoids_along(&self.frame, center, principal, scale, SEMI_AXIS_ROUNDINGS)
+        let roundings = (POINT_ROUNDINGS, SEMI_AXIS_ROUNDINGS);
+        ellipsoids_along(&self.frame, center, principal, scale, roundings)
     }
 
     /// The centre and the five columns of the module documentation, in the frame (ω_u, ω_v, ω_w).

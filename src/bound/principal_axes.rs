@@ -5,7 +5,7 @@ use crate::num::{Double, Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3};
 
 /// Pays for rounding axes and centre to `f32`, in units of u times the longest semi-axis and the centre's
 /// length.
-const POINT_ROUNDINGS: f64 = 4.0;
+pub(super) const POINT_ROUNDINGS: f64 = 4.0;
 
 /// The orthonormal axes and the semi-axes of an ellipsoid that contains {Az : ‖z‖ ≤ 1} tightly, where `rows`
 /// are the rows of A, none of them zero.
@@ -65,7 +65,8 @@ pub(super) fn principal_axes<D: Double, const K: usize>(
 /// The ellipsoids with these principal axes around `center`, whose coordinates are those of `frame`, times
 /// `scale`. They are rounded outward; `roundings` pay for the rounding of `scale` and of its products.
 ///
-/// A ball is added, whose radius d is the distance by which rounding to `f32` moves a point. For any t > 0,
+/// A ball is added, whose radius d is the distance by which rounding moves a point: `point_roundings` times u times the
+/// longest semi-axis and the length of the centre, at least [`POINT_ROUNDINGS`] of them. For any t > 0,
 /// the sum of an ellipsoid with the semi-axes aᵢ and this ball lies in the ellipsoid with the squared
 /// semi-axes (1+t)aᵢ² + (1+1/t)d².
 #[inline(always)]
@@ -74,12 +75,11 @@ pub(super) fn ellipsoids_along<N: Single>(
     center: Vector3<N::Double>,
     (axes, semi_axes): ([Vector3<N::Double>; 3], [N::Double; 3]),
     scale: N,
-    roundings: u16,
+    (point_roundings, roundings): (f64, u16),
 ) -> Ellipsoids<N> {
     let [a, b, c] = semi_axes;
     let (shortest, longest) = (a.min(b).min(c), a.max(b).max(c));
-    // Half an ulp in each component of the three axes and of the centre.
-    let moved = (longest + center.length()) * (POINT_ROUNDINGS * f64::from(UNIT_ROUNDOFF));
+    let moved = (longest + center.length()) * (point_roundings * f64::from(UNIT_ROUNDOFF));
     let one = moved.splat(1.0);
     let share = (moved / shortest).min(one);
     Ellipsoids {

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::cap_union::{CapMean, CapReach, CapSum};
-use super::ltc_majorant::{LtcMembers, rounding_of_image};
+use super::ltc_majorant::{LtcMembers, rounding_of_rows};
 use super::{Cap, Caps, LobeFamily, LtcLobe, Majorant, ReceiverLobe};
 use crate::base::Direction;
 use crate::num::{Single, Vector3, round_down, round_up, sqrt_f64};
@@ -95,16 +95,19 @@ impl ReceiverLobe for LtcLobe {
         let squares = exact.map(Vector3::length_squared);
         let [first, determinant, third] = squares;
         let sum: f64 = squares.iter().sum();
-        let rounding = rounding_of_image(first, third);
+        let rounding = rounding_of_rows(first, determinant);
         let least_image = (2.0 * determinant / sum - rounding).max(0.0);
-        let apart = exact[1] - Vector3::<f32>::from(rows[1]).widen();
+        let [apart, apart_too, _] = [0, 1, 2].map(|i| {
+            let rounded = Vector3::<f32>::from(rows[i]).widen();
+            (exact[i] - rounded).length_squared()
+        });
         let round = |length: f64| round_up(length as f32, LENGTH_ROUNDINGS);
         LtcFamily {
             normals: Cap::of_axis(self.normal()),
             amplitude: self.amplitude(),
             rows,
-            // The second row alone is rounded, here and in the value.
-            deviations: [0.0, round(apart.length() + rounding)],
+            // The third row alone is exact, here and in the value.
+            deviations: [0.0, round(sqrt_f64(apart + apart_too) + rounding)],
             norms: [round(sqrt_f64(third)), round(sqrt_f64(sum))],
             least_image: round_down(least_image as f32, LENGTH_ROUNDINGS),
         }

@@ -2,7 +2,7 @@
 
 use core::f64::consts::FRAC_1_PI;
 
-use super::ltc_lobes::{LtcLobes, image_error};
+use super::ltc_lobes::LtcLobes;
 use super::ltc_majorant::rounding_of_value;
 use super::{Fresnel, Ggx, Incidence, ltc_table};
 use crate::num::{Double, Real, Single, Vector3, exact_dot};
@@ -50,6 +50,10 @@ impl GgxSurfaces<f32> {
     }
 }
 
+/// The least roughness of a matrix, and the least product αμ.
+const LEAST_ROUGHNESS: f32 = 3e-5;
+const LEAST_WIDTH: f32 = 2.4e-5;
+
 /// The least share of a cosine above the horizon. Callers' lobes may lie almost wholly below it.
 const LEAST_SHARE: f64 = 1e-6;
 
@@ -81,18 +85,24 @@ impl<N: Single> GgxSurfaces<N> {
         );
         let over_root = (mu + 1.0).sqrt().recip();
         let incidence = sine * over_root;
+        let (resolved, most_incidence) = resolved(alpha);
         // tan(θ/2) and tan(δ/2), tanδ = α tanθ.
         let slope = alpha * sine;
         let half_delta = slope / (mu + (mu * mu + slope * slope).sqrt());
         let tangents = (incidence * over_root + half_delta) * 0.5;
         let [[a, b, d, e], [n_a, f_a, ..]] = N::per_lane_quads(
-            [alpha.sqrt(), incidence, tangents, mu],
+            [
+                alpha.sqrt(),
+                tangents,
+                resolved.sqrt(),
+                incidence.min(most_incidence),
+            ],
             is_lit,
             #[inline(always)]
-            |[root, incidence, tangents, _], _| {
+            |[root, tangents, resolved_root, incidence], _| {
                 let [n_a, f_a] = ltc_table::albedos(root.into(), tangents.into());
                 [
-                    ltc_table::matrix(root.into(), incidence.into()).map(|x| x as f32),
+                    ltc_table::matrix(resolved_root.into(), incidence.into()).map(|x| x as f32),
                     [n_a as f32, f_a as f32, 0.0, 0.0],
                 ]
             },
@@ -101,7 +111,7 @@ impl<N: Single> GgxSurfaces<N> {
         let reflected = head_on * n_a + (grazing - head_on) * f_a;
         // A caller's factor may be NaN.
         let reflected = Real::max(reflected, alpha.zero()).min(alpha.splat(1.0));
-        let matrix = Matrix::of([a, alpha * b, alpha * d, alpha * e]);
+        let matrix = Matrix::of([a, resolved * b, resolved * d, resolved * e]);
         // Above ω_u in the plane of incidence n has these coordinates.
         let share = matrix.twice_share_above([-plane.sine, plane.cosine]) * 0.5;
         let lobes = matrix.lobes(
@@ -113,6 +123,17 @@ impl<N: Single> GgxSurfaces<N> {
         let [reflected] = N::select_all(is_lit, [reflected], [alpha.zero()]);
         (LtcLobes::select(is_lit, lobes, none), reflected)
     }
+}
+
+/// The roughness and the greatest √(1 − μ) by which the matrix is looked up.
+///
+/// Across the plane of incidence a lobe is 2αμ wide. Where that is too narrow for directions in single precision, the
+/// matrix is that of a greater μ. So rounding moves no image of a direction by more than 1/50 of its length.
+#[inline(always)]
+fn resolved<N: Single>(alpha: N) -> (N, N) {
+    let alpha = Real::max(alpha, alpha.splat(LEAST_ROUGHNESS));
+    let least_cosine = alpha.recip() * LEAST_WIDTH;
+    (alpha, least_cosine.one_minus().sqrt())
 }
 
 /// The elements m₁₁, m₁₃, m₃₁ and m₃₃ of M⁻¹ in each lane. The middle element is 1, and the others are zero.
@@ -180,19 +201,19 @@ impl<D: Double> Matrix<D> {
     ) -> LtcLobes<N> {
         let [m11, m13, m31, m33] = self.elements;
         let factor = m11.splat(1.0) / self.determinant;
-        let (first, third) = (
-            x * (factor * m11) + z * (factor * m13),
-            x * (factor * m31) + z * (factor * m33),
-        );
-        let (first, third) = (Vector3::narrow(first), Vector3::narrow(third));
-        let amplitude = N::narrow(magnitude * FRAC_1_PI * factor * factor);
-        LtcLobes {
+        // The first row has the component m₁₁m₃₃ − m₁₃m₃₁ across the third, over the length of that.
+        let over = m11.splat(1.0) / (m31 * m31 + m33 * m33);
+        let across = x * (over * m33) - z * (over * m31);
+        let third = x * (factor * m31) + z * (factor * m33);
+        let lobes = LtcLobes {
             normal,
-            amplitude,
-            first,
-            third,
-            image_error: image_error(amplitude, [first, third]),
-        }
+            amplitude: N::narrow(magnitude * FRAC_1_PI * factor * factor),
+            across: Vector3::narrow(across),
+            third: Vector3::narrow(third),
+            shear: N::narrow((m11 * m31 + m13 * m33) * over),
+            image_error: N::narrow(factor.zero()),
+        };
+        lobes.with_image_error()
     }
 }
 

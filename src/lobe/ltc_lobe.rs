@@ -58,7 +58,8 @@ use crate::num::{Single, Vector3};
 /// # Edges
 ///
 /// The lobe is empty, that is, zero in every direction, if the light arrives from below the surface or at
-/// grazing incidence, μ ≤ 0. For α → 0 it becomes as narrow as the GGX lobe does.
+/// grazing incidence, μ ≤ 0. Across the plane of incidence a GGX lobe is about 2αμ wide. Where αμ is below 2.4·10⁻⁵,
+/// which single precision cannot follow, the lobe is as wide as with that.
 ///
 /// A saved scene keeps the GGX material and makes the lobe anew.
 ///
@@ -86,8 +87,10 @@ pub struct LtcLobe {
     reflected: f32,
     /// The factor of z/‖M⁻¹ω‖⁴.
     amplitude: f32,
-    /// The first and the third row of M⁻¹, in world space. The second is their cross product.
+    /// What of the first row of M⁻¹ is across the third, and the third, in world space.
     rows: [Vec3; 2],
+    /// The factor of the third row in the first.
+    shear: f32,
     /// The most by which rounding moves M⁻¹ω.
     image_error: f32,
 }
@@ -110,7 +113,8 @@ impl LtcLobe {
             normal,
             reflected,
             amplitude: lane.amplitude,
-            rows: [lane.first.into(), lane.third.into()],
+            rows: [lane.across.into(), lane.third.into()],
+            shear: lane.shear,
             image_error: lane.image_error,
         }
     }
@@ -127,8 +131,7 @@ impl LtcLobe {
     /// [`Error::Number`] if `magnitude` is outside \[0, 1\] or NaN. [`Error::Matrix`] if an element is above
     /// 10⁶ or NaN, or if the determinant m₁₁m₃₃ − m₁₃m₃₁ is not at least 10⁻⁶ and 10⁻⁴ of the product of the
     /// lengths of both rows. Also if rounding to single precision may move M⁻¹ω by more than 1/16 of its length, as it
-    /// may if the greatest singular value is 10⁵ times the least, or if the rows are long and nearly parallel: values
-    /// near the peak would be wrong by more than 30 %.
+    /// may if the greatest singular value is 10⁵ times the least: values near the peak would be wrong by more than 30 %.
     ///
     /// ```
     /// use stochastic_light_culling::{Direction, Incidence, Lobe, LtcLobe, glam::Vec3};
@@ -196,9 +199,9 @@ impl LtcLobe {
     /// Its second row is the cross product of the third and the first.
     #[must_use]
     pub fn inverse_matrix(&self) -> Mat3 {
-        let lanes = self.lanes();
-        let rows = [lanes.first, lanes.second(), lanes.third].map(Vec3::from);
-        Mat3::from_cols(rows[0], rows[1], rows[2]).transpose()
+        let [first, second, third] = self.lanes().rows();
+        let [x, y, z] = [first, second, third].map(|row| Vec3::from(Vector3::<f32>::narrow(row)));
+        Mat3::from_cols(x, y, z).transpose()
     }
 
     /// The factor of z/‖M⁻¹ω‖⁴ in the value, in sr⁻¹. Zero if the lobe is empty.
@@ -213,8 +216,9 @@ impl LtcLobe {
         LtcLobes {
             normal: self.normal.into(),
             amplitude: self.amplitude,
-            first: self.rows[0].into(),
+            across: self.rows[0].into(),
             third: self.rows[1].into(),
+            shear: self.shear,
             image_error: self.image_error,
         }
     }

@@ -3,9 +3,9 @@
 use super::LobeNumbers;
 use crate::num::{Real, Single, UNIT_ROUNDOFF, Vector3};
 
-/// Budget for the images of a direction and of a way along it, in units of u times the norm of M⁻¹: 12, times
+/// Budget for the images of a direction and of a way along it, in units of u times the norm of M⁻¹: 18, times
 /// (η(1 − η))^(−½), η = 2⁻⁸.
-const IMAGE_ROUNDINGS: f64 = 204.0;
+const IMAGE_ROUNDINGS: f64 = 306.0;
 /// (1 − η)², and the same again to pay for all else that is rounded.
 const LEFT_OF_FOURTH_POWER: f32 = 0.98;
 /// The least and the largest norm of M⁻¹ that the test of faint lights takes, and the largest reciprocal of a squared
@@ -19,17 +19,22 @@ const LEAST: f32 = 8.673_617_4e-19;
 const LEAST_FACTOR: f32 = 7.523_164e-37;
 
 /// How many numbers a lobe has.
-pub(crate) const LTC_NUMBERS: usize = 11;
+pub(crate) const LTC_NUMBERS: usize = 12;
 
 /// An [`LtcLobe`](super::LtcLobe) in each lane.
+///
+/// The first row of M⁻¹ is nearly parallel to the third where a lobe is narrow at grazing incidence. So it is kept in
+/// two parts, along the third row and across. Then neither the second row, a cross product, nor an image cancels.
 #[derive(Clone, Copy)]
 pub(crate) struct LtcLobes<N> {
     pub normal: Vector3<N>,
     pub amplitude: N,
-    /// The first row of M⁻¹.
-    pub first: Vector3<N>,
+    /// What of the first row of M⁻¹ is perpendicular to the third, but for rounding.
+    pub across: Vector3<N>,
     /// The third row of M⁻¹.
     pub third: Vector3<N>,
+    /// The factor of the third row in the first.
+    pub shear: N,
     /// The most by which rounding moves M⁻¹ω. Infinite if the test of faint lights is not for this lobe.
     pub image_error: N,
 }
@@ -49,13 +54,15 @@ impl<N: Single> LtcLobes<N> {
             z_y,
             z_z,
             image_error,
+            shear,
             ..,
         ] = *numbers;
         Self {
             normal: Vector3::new(n_x, n_y, n_z),
             amplitude,
-            first: Vector3::new(x_x, x_y, x_z),
+            across: Vector3::new(x_x, x_y, x_z),
             third: Vector3::new(z_x, z_y, z_z),
+            shear,
             image_error,
         }
     }
@@ -63,10 +70,10 @@ impl<N: Single> LtcLobes<N> {
     /// The inverse of [`from_numbers`](Self::from_numbers).
     #[inline(always)]
     pub fn numbers(&self) -> [N; LTC_NUMBERS] {
-        let (n, x, z) = (self.normal, self.first, self.third);
-        let (amplitude, error) = (self.amplitude, self.image_error);
+        let (n, x, z) = (self.normal, self.across, self.third);
+        let (amplitude, error, shear) = (self.amplitude, self.image_error, self.shear);
         [
-            n.x, n.y, n.z, amplitude, x.x, x.y, x.z, z.x, z.y, z.z, error,
+            n.x, n.y, n.z, amplitude, x.x, x.y, x.z, z.x, z.y, z.z, error, shear,
         ]
     }
 
@@ -77,8 +84,9 @@ impl<N: Single> LtcLobes<N> {
         Self {
             normal,
             amplitude: zero,
-            first: Vector3::new(one, zero, zero),
+            across: Vector3::new(one, zero, zero),
             third: Vector3::new(zero, zero, one),
+            shear: zero,
             image_error: zero,
         }
     }
@@ -86,16 +94,17 @@ impl<N: Single> LtcLobes<N> {
     /// `yes` where `mask` holds, and `no`, with the same normal, elsewhere.
     #[inline(always)]
     pub fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
-        let [amplitude, image_error] = N::select_all(
+        let [amplitude, shear, image_error] = N::select_all(
             mask,
-            [yes.amplitude, yes.image_error],
-            [no.amplitude, no.image_error],
+            [yes.amplitude, yes.shear, yes.image_error],
+            [no.amplitude, no.shear, no.image_error],
         );
         Self {
             normal: no.normal,
             amplitude,
-            first: Vector3::select(mask, yes.first, no.first),
+            across: Vector3::select(mask, yes.across, no.across),
             third: Vector3::select(mask, yes.third, no.third),
+            shear,
             image_error,
         }
     }
@@ -103,7 +112,7 @@ impl<N: Single> LtcLobes<N> {
     /// The second row of M⁻¹.
     #[inline(always)]
     pub fn second(&self) -> Vector3<N> {
-        self.third.cross(self.first)
+        self.third.cross(self.across)
     }
 
     /// v towards `outgoing`.
@@ -115,7 +124,8 @@ impl<N: Single> LtcLobes<N> {
         if N::is_known_false(is_lit) {
             return zero;
         }
-        let (x, y) = (self.first.dot(outgoing), self.second().dot(outgoing));
+        let x = self.across.dot(outgoing) + self.shear * height;
+        let y = self.second().dot(outgoing);
         let over = (x * x + y * y + height * height).recip();
         // Two factors, since the fourth power of a length may overflow.
         let value = self.amplitude * over * (height * over);
@@ -131,10 +141,11 @@ impl<N: Single> LtcLobes<N> {
     /// M⁻¹w is off by e, (a − e)² ≥ (1 − η)a² − e²/η for any η in (0, 1).
     #[inline(always)]
     pub fn is_fainter(&self, flux: N, way: Vector3<N>, length_squared: N, least: N) -> N::Mask {
-        let [x, y, z] = [self.first, self.second(), self.third].map(
+        let [across, y, z] = [self.across, self.second(), self.third].map(
             #[inline(always)]
             |row| row.near_dot(way),
         );
+        let x = z.times_plus(self.shear, across);
         let image = Vector3::new(x, y, z);
         let length = length_squared.sqrt();
         let error = self.image_error * length;
@@ -149,20 +160,34 @@ impl<N: Single> LtcLobes<N> {
     }
 }
 
-/// The [error](LtcLobes::image_error) of a lobe with this amplitude and these rows, the first and the third.
-#[inline(always)]
-pub(super) fn image_error<N: Single>(amplitude: N, [first, third]: [Vector3<N>; 2]) -> N {
-    let second = third.cross(first).widen().length_squared();
-    let sum = first.widen().length_squared() + second + third.widen().length_squared();
-    let norm = sum.sqrt();
-    // The determinant, `second`, over the product of the greater singular values, of which half the sum is an upper
-    // bound.
-    let least = second * 2.0 / sum;
-    let peak = amplitude.widen().max(sum.splat(1.0));
-    let [shortest, longest] = NORMS;
-    let is_in_range = norm.gt(sum.splat(shortest))
-        & norm.le(sum.splat(longest))
-        & peak.le(least * least * LARGEST_PEAK);
-    let error = N::narrow(norm * (IMAGE_ROUNDINGS * f64::from(UNIT_ROUNDOFF)));
-    N::select(is_in_range, error, amplitude.splat(f32::INFINITY))
+impl<N: Single> LtcLobes<N> {
+    /// The rows of M⁻¹.
+    #[inline(always)]
+    pub fn rows(&self) -> [Vector3<N::Double>; 3] {
+        let (across, third) = (self.across.widen(), self.third.widen());
+        let first = across + third * self.shear.widen();
+        [first, third.cross(across), third]
+    }
+
+    /// With the [error](Self::image_error) of its rows.
+    #[inline(always)]
+    pub fn with_image_error(self) -> Self {
+        let [x, second, z] = self.rows().map(Vector3::length_squared);
+        let sum = x + second + z;
+        let norm = sum.sqrt();
+        // The determinant, `second`, over the product of the greater singular values, of which half the sum is an upper
+        // bound.
+        let least = second * 2.0 / sum;
+        let peak = self.amplitude.widen().max(sum.splat(1.0));
+        let [shortest, longest] = NORMS;
+        let is_in_range = norm.gt(sum.splat(shortest))
+            & norm.le(sum.splat(longest))
+            & peak.le(least * least * LARGEST_PEAK);
+        let error = N::narrow(norm * (IMAGE_ROUNDINGS * f64::from(UNIT_ROUNDOFF)));
+        let image_error = N::select(is_in_range, error, self.amplitude.splat(f32::INFINITY));
+        Self {
+            image_error,
+            ..self
+        }
+    }
 }

@@ -6,18 +6,18 @@ use crate::num::{Double, Real, Single, UNIT_ROUNDOFF, Vector3};
 
 /// Budget for the value, and for the rounding of a maximum within a cap to single precision.
 const MAXIMUM_ROUNDINGS: u16 = 32;
-/// Budget for the second row in the value, the cross product of the others in single precision, in units of u and the
-/// product of their lengths.
-const CROSS_ROUNDINGS: f64 = 4.0;
-/// Budget for the other rows in the value, and for lengths of directions, in units of u and the norm of the matrix.
+/// Budget for the first and the second row in the value, of which one is a sum and the other a cross product, in units of
+/// u and their lengths.
+const ROW_ROUNDINGS: f64 = 4.0;
+/// Budget for the products of rows in the value, and for lengths of directions, in units of u and the norm of the matrix.
 const VALUE_ROUNDINGS: f64 = 8.0;
 /// Keeps the image of a direction away from zero.
 const LEAST_IMAGE: f64 = 1e-60;
 
-/// How far the image of a direction may be off in the value, for the squared lengths of the first and the third row.
+/// How far the image of a direction may be off in the value, for the squared lengths of the first and the second row.
 #[inline(always)]
-pub(super) fn rounding_of_image<D: Double>(first: D, third: D) -> D {
-    (first * third).sqrt() * (CROSS_ROUNDINGS * f64::from(UNIT_ROUNDOFF))
+pub(super) fn rounding_of_rows<D: Double>(first: D, second: D) -> D {
+    (first + second).sqrt() * (ROW_ROUNDINGS * f64::from(UNIT_ROUNDOFF))
 }
 
 /// How far the image of a direction may be off in the value, that of the direction itself included, for the squared
@@ -25,17 +25,10 @@ pub(super) fn rounding_of_image<D: Double>(first: D, third: D) -> D {
 #[inline(always)]
 pub(super) fn rounding_of_value<D: Double>([first, second, third]: [D; 3]) -> D {
     let norm = (first + second + third).sqrt();
-    norm * (VALUE_ROUNDINGS * f64::from(UNIT_ROUNDOFF)) + rounding_of_image(first, third)
+    norm * (VALUE_ROUNDINGS * f64::from(UNIT_ROUNDOFF)) + rounding_of_rows(first, second)
 }
 
 impl<N: Single> LtcLobes<N> {
-    /// The rows of M⁻¹, where the first and the third are as they are stored.
-    #[inline(always)]
-    pub(super) fn rows(&self) -> [Vector3<N::Double>; 3] {
-        let (first, third) = (self.first.widen(), self.third.widen());
-        [first, third.cross(first), third]
-    }
-
     /// The majorant within a cap.
     #[inline(always)]
     pub fn majorant(&self, cap: &Caps<N>) -> Majorant<N> {
@@ -43,7 +36,7 @@ impl<N: Single> LtcLobes<N> {
         let squares = rows.map(Vector3::length_squared);
         let [x, determinant, z] = squares;
         let sum = x + determinant + z;
-        let rounding = rounding_of_image(x, z);
+        let rounding = rounding_of_rows(x, determinant);
         let zero = sum.zero();
         let members = LtcMembers {
             normals: Caps::around(self.normal),

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use stochastic_light_culling::{Direction, Ggx, Incidence, LtcLobe, Schlick, SpotLobe};
+use stochastic_light_culling::{Direction, Ggx, Incidence, Lobe as _, LtcLobe, Schlick, SpotLobe};
 
 use super::{Fresnel, Vector};
 
@@ -128,8 +128,10 @@ fn ltc_lobe(roughness: f32, share: f32, matrix: Option<[f32; 4]>, incidence: Inc
 
 /// The first and the third row of M⁻¹. The second is the cross product of the third and the first.
 pub fn ltc_rows(lobe: &LtcLobe) -> [Vector; 2] {
-    let columns = lobe.inverse_matrix().transpose();
-    [columns.x_axis, columns.z_axis].map(Vector::from)
+    let [_, _, _, _, x, y, z, third_x, third_y, third_z, _, shear, ..] =
+        lobe.numbers().map(f64::from);
+    let third = Vector([third_x, third_y, third_z]);
+    [Vector([x, y, z]) + third * shear, third]
 }
 
 /// The value of a transformed cosine without a horizon.
