@@ -11,7 +11,8 @@
 //! 4. For each part of a block, and for each part of that, the places of the lights that may touch it are selected
 //!    (`block`, `select`).
 //! 5. The lights of the last parts are gathered into chunks, and tested against each tile and each of its depth
-//!    intervals (`tile_lists`). Their indices are appended to [`LightLists`].
+//!    intervals (`tile_lists`), or with as many tiles at once as there are lanes (`tile_lanes`). Their indices are
+//!    appended to [`LightLists`].
 //! 6. With the exact test, a block's lists of places are made first, and their pairs of a light and an interval are
 //!    tested side by side (`exact`).
 //! 7. `parallel` gives shares of the lights and of the blocks to threads, and concatenates their lists.
@@ -57,6 +58,7 @@ mod records;
 mod select;
 mod shading;
 mod tile_depths;
+mod tile_lanes;
 mod tile_lists;
 
 pub use batch::LightBatch;

@@ -313,7 +313,6 @@ impl Area {
     }
 
     /// The number of tiles.
-    #[cfg(feature = "rayon")]
     pub fn len(self) -> usize {
         let [columns, rows] = self.size();
         columns * rows

@@ -33,9 +33,19 @@ impl<P: Projected> Chunk<P> {
         }
     }
 
+    /// The fields of a light in all lanes, and its number.
+    #[inline(always)]
+    pub fn splat<S: Simd>(&self, simd: S, lane: usize) -> (P::Fields<F32Lanes<S>>, u32) {
+        let mut fields = P::fields_of(F32Lanes::new(simd, 0.0));
+        for (vector, lanes) in fields.as_mut().iter_mut().zip(self.fields.as_ref()) {
+            *vector = F32Lanes::new(simd, lanes[lane]);
+        }
+        (fields, self.numbers[lane])
+    }
+
     /// The `part`-th vector of each field.
     #[inline(always)]
-    fn load<S: Simd>(&self, simd: S, part: usize) -> P::Fields<F32Lanes<S>> {
+    pub fn load<S: Simd>(&self, simd: S, part: usize) -> P::Fields<F32Lanes<S>> {
         let mut fields = P::fields_of(F32Lanes::new(simd, 0.0));
         for (vector, lanes) in fields.as_mut().iter_mut().zip(self.fields.as_ref()) {
             *vector = load(simd, lanes, part);
@@ -118,13 +128,14 @@ impl<P: BoxTest> TileLists<P> {
     }
 }
 
-/// Makes the lists of one tile at a time.
+/// Makes the lists of one tile at a time, or of one in each lane.
 #[derive(Clone, Debug)]
-struct ListWriter {
-    /// The vectors that have a light whose bounds touch the tile.
-    candidates: Vec<u32>,
-    /// The list of each depth interval, all with the same room.
-    lists: Vec<u32>,
+pub(super) struct ListWriter {
+    /// The vectors that have a light whose bounds touch the tile. Where lanes have tiles, the lights instead.
+    pub(super) candidates: Vec<u32>,
+    /// The list of each depth interval, all with the same room. Where lanes have tiles, the bits of those that each light
+    /// touches.
+    pub(super) lists: Vec<u32>,
     /// The length of each list. Zero between tiles.
     lens: Vec<usize>,
 }
@@ -143,6 +154,14 @@ impl ListWriter {
     ) {
         let intervals = tiles.intervals() as usize;
         let vectors = chunks.len() * parts::<S>();
+        if intervals == 1 && area.len() >= S::u32s::LEN {
+            let empty = self.write_tiles(simd, chunks, tiles, area, output);
+            let tests = (area.len() as u64 - empty) * (vectors * S::u32s::LEN) as u64;
+            counters.empty += empty;
+            counters.tile_tests += tests;
+            counters.box_tests += tests;
+            return;
+        }
         // Whole vectors are written.
         let room = (vectors + 1) * S::u32s::LEN;
         grow(&mut self.candidates, vectors, 0);

@@ -128,20 +128,27 @@ struct Row<'a> {
 struct Pixel<'a> {
     /// Its place in the row of the image.
     column: usize,
-    /// Lit from all sides, so that lights are counted wherever they are.
-    point: ShadedPoint,
-    normal: Vec3,
+    surface: &'a Surface,
     list: &'a [u32],
+}
+
+impl Pixel<'_> {
+    /// Lit from all sides, so that lights are counted wherever they are.
+    fn point(&self) -> ShadedPoint {
+        self.surface.position.into()
+    }
 }
 
 impl<'a> Row<'a> {
     /// Collects the pixels from the `first` on.
-    fn collect(
+    fn collect<'l>(
         &mut self,
-        frame: &Frame,
+        frame: &'a Frame,
         [first, y]: [u32; 2],
-        list_of: impl Fn((u32, [u32; 2]), f32) -> Option<&'a [u32]>,
-    ) {
+        list_of: impl Fn((u32, [u32; 2]), f32) -> Option<&'l [u32]>,
+    ) where
+        'l: 'a,
+    {
         self.pixels.clear();
         let width = frame.surfaces.image_size[0];
         // Divided once a row.
@@ -153,8 +160,7 @@ impl<'a> Row<'a> {
             if let Some(list) = list_of(pixel, surface.depth) {
                 self.pixels.push(Pixel {
                     column: x as usize,
-                    point: surface.position.into(),
-                    normal: surface.normal,
+                    surface,
                     list,
                 });
             }
@@ -249,13 +255,13 @@ impl<L: ShadedLight> Shading<L> {
     /// Adds the lights of each pixel's list to its sums.
     fn shade_pixel_by_pixel(&self, row: &mut Row) {
         let Row { pixels, sums } = row;
-        let points = pixels.iter().map(|pixel| (pixel.point, pixel.list));
+        let points = pixels.iter().map(|pixel| (pixel.point(), pixel.list));
         let add = |(mut last, mut sum): (usize, Sums), i: usize, estimate: &Estimate| {
             if i != last {
                 sums[last] = sum;
                 (last, sum) = (i, Sums::default());
             }
-            let cosine = (-estimate.direction).dot(pixels[i].normal).max(0.0);
+            let cosine = (-estimate.direction).dot(pixels[i].surface.normal).max(0.0);
             let tint = self.tints[estimate.light as usize];
             sum.contributing += 1;
             sum.irradiance += estimate.radiance * cosine * tint;
@@ -281,11 +287,11 @@ impl<L: ShadedLight> Shading<L> {
             let list = pixels[group[0]].list;
             for group in group.chunks(PointBlock::LEN) {
                 let with_normal = |i: &usize| ShadedPoint {
-                    normal: pixels[*i].normal,
-                    ..pixels[*i].point
+                    normal: pixels[*i].surface.normal,
+                    ..pixels[*i].point()
                 };
                 let normals = PointBlock::take(&mut group.iter().map(with_normal));
-                let points = PointBlock::take(&mut group.iter().map(|i| pixels[*i].point));
+                let points = PointBlock::take(&mut group.iter().map(|i| pixels[*i].point()));
                 let (Some(points), Some(normals)) = (points, normals) else {
                     continue;
                 };

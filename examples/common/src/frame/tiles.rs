@@ -132,7 +132,7 @@ impl Tiles {
 
     /// The tile and the depth interval that hold the surface at `pixel` of a subregion, which is at `depth`; none
     /// for sky.
-    #[inline]
+    #[inline(always)]
     pub fn place_of(&self, (subregion, pixel): (u32, [u32; 2]), depth: f32) -> Option<Place> {
         let Subregion { grid, depths } = &self.subregions[subregion as usize];
         let tile = grid.tile_of(pixel);

@@ -1,0 +1,170 @@
+//! The lists of tiles with one depth interval, with a tile in each lane.
+//!
+//! Where few lights touch a tile, a vector of lights has idle lanes at each tile. Neighbours share most of their lights:
+//! of a vector of tiles, a light that touches one touches most.
+
+use fearless_simd::{Simd, SimdBase, SimdMask};
+
+use super::TileDepths;
+use super::batch::grow;
+use super::block::Output;
+use super::lanes::{LANES, Lanes, load, numbers_from, parts, write_chosen};
+use super::tile_depths::{Area, NONE, is_none};
+use super::tile_lists::{Chunk, ListWriter};
+use crate::num::{F32Lanes, Real};
+use crate::touch::BoxTest;
+use crate::view::ViewBounds;
+
+/// Up to as many tiles as a vector has lanes.
+struct TilesInLanes {
+    /// The least and the greatest slopes across and down, and depths. Of lanes past the last tile, anything.
+    ends: [[Lanes; 2]; 3],
+    slots: Lanes<usize>,
+    len: usize,
+}
+
+impl TilesInLanes {
+    const EMPTY: Self = Self {
+        ends: [[[NONE[0]; LANES], [NONE[1]; LANES]]; 3],
+        slots: [0; LANES],
+        len: 0,
+    };
+
+    #[inline(always)]
+    fn push(&mut self, tile: [[f32; 2]; 3], slot: usize) {
+        let lane = self.len % LANES;
+        for ([least, greatest], range) in self.ends.iter_mut().zip(tile) {
+            [least[lane], greatest[lane]] = range;
+        }
+        self.slots[lane] = slot;
+        self.len += 1;
+    }
+
+    /// What each tile spans. Nothing past the last one.
+    #[inline(always)]
+    fn load<S: Simd>(&mut self, simd: S) -> ViewBounds<F32Lanes<S>> {
+        for [least, greatest] in &mut self.ends {
+            for lane in self.len..S::f32s::LEN {
+                [least[lane % LANES], greatest[lane % LANES]] = NONE;
+            }
+        }
+        let range =
+            |[least, greatest]: &[Lanes; 2]| [load(simd, least, 0), load(simd, greatest, 0)];
+        let [across, down, depths] = &self.ends;
+        ViewBounds {
+            across: range(across),
+            down: range(down),
+            depths: range(depths),
+        }
+    }
+}
+
+/// What holds all lanes.
+#[inline(always)]
+fn hull_of_lanes<S: Simd>(bounds: &ViewBounds<F32Lanes<S>>) -> ViewBounds<F32Lanes<S>> {
+    let hull = |[least, greatest]: [F32Lanes<S>; 2]| {
+        [
+            least.splat(least.0.reduce_min()),
+            greatest.splat(greatest.0.reduce_max()),
+        ]
+    };
+    ViewBounds {
+        across: hull(bounds.across),
+        down: hull(bounds.down),
+        depths: hull(bounds.depths),
+    }
+}
+
+impl ListWriter {
+    /// Writes the lists of the tiles of `area`, of the lights of `chunks`. Returns how many tiles are empty.
+    #[inline(always)]
+    pub fn write_tiles<S: Simd, P: BoxTest>(
+        &mut self,
+        simd: S,
+        chunks: &[Chunk<P>],
+        tiles: &TileDepths,
+        area: Area,
+        output: &mut Output,
+    ) -> u64 {
+        let mut empty = 0;
+        let mut lanes = TilesInLanes::EMPTY;
+        let last = area.max.map(|end| end - 1);
+        for y in area.min[1]..area.max[1] {
+            for x in area.min[0]..area.max[0] {
+                let depths = tiles.hull(x, y);
+                if is_none(depths) {
+                    empty += 1;
+                } else {
+                    let slot = output.window.slot([x, y], 1);
+                    lanes.push([tiles.across(x), tiles.down(y), depths], slot);
+                }
+                if lanes.len == S::f32s::LEN || ([x, y] == last && lanes.len > 0) {
+                    self.write_lanes(simd, chunks, &mut lanes, output);
+                    lanes.len = 0;
+                }
+            }
+        }
+        empty
+    }
+
+    #[inline(always)]
+    fn write_lanes<S: Simd, P: BoxTest>(
+        &mut self,
+        simd: S,
+        chunks: &[Chunk<P>],
+        lanes: &mut TilesInLanes,
+        output: &mut Output,
+    ) {
+        let tiles = lanes.load(simd);
+        let count = self.find_lights(simd, chunks, &hull_of_lanes(&tiles));
+        if count == 0 {
+            return;
+        }
+        // Bits of the tiles that each light touches. Whole vectors are read.
+        let room = count + S::u32s::LEN;
+        grow(&mut self.lists, room, 0);
+        let (places, touched) = (&mut self.candidates[..room], &mut self.lists[..room]);
+        for (place, touched) in places[..count].iter_mut().zip(touched.iter_mut()) {
+            let (fields, number) =
+                chunks[*place as usize / LANES].splat(simd, *place as usize % LANES);
+            let outline = P::outline(&fields, tiles.across, tiles.down);
+            let meet = P::bounds_of(&fields).meet(&tiles);
+            let touching = meet & !P::misses(&fields, &outline, tiles.depths);
+            (*place, *touched) = (number, touching.to_bitmask() as u32);
+        }
+        touched[count..].fill(0);
+        for (lane, slot) in lanes.slots[..lanes.len.min(LANES)].iter().enumerate() {
+            let (list, mut len) = (output.lists.room_for(room), 0);
+            for first in (0..count).step_by(S::u32s::LEN) {
+                let load =
+                    |lanes: &[u32]| S::u32s::from_slice(simd, &lanes[first..][..S::u32s::LEN]);
+                let bit = S::u32s::splat(simd, 1 << lane);
+                let touches = (load(touched) & bit).simd_eq(bit);
+                len += write_chosen::<S>(load(places), touches, &mut list[len..]);
+            }
+            output.lists.set_range(*slot, 0..len);
+            output.lists.advance(len);
+        }
+    }
+
+    /// Writes the places in `chunks` of the lights whose bounds meet `hull` to the front of the candidates. Returns their
+    /// number.
+    #[inline(always)]
+    fn find_lights<S: Simd, P: BoxTest>(
+        &mut self,
+        simd: S,
+        chunks: &[Chunk<P>],
+        hull: &ViewBounds<F32Lanes<S>>,
+    ) -> usize {
+        grow(&mut self.candidates, (chunks.len() + 1) * LANES, 0);
+        let mut count = 0;
+        for (index, chunk) in chunks.iter().enumerate() {
+            for part in 0..parts::<S>() {
+                let places = numbers_from(simd, index * LANES + part * S::u32s::LEN);
+                let meet = P::bounds_of(&chunk.load(simd, part)).meet(hull);
+                count += write_chosen::<S>(places, meet, &mut self.candidates[count..]);
+            }
+        }
+        count
+    }
+}
