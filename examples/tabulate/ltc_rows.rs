@@ -2,10 +2,12 @@
 //! are small around the lobes of the table that have such an M. The notation is that of the bound.
 //!
 //! Each inequality holds for any M. So they are made for coarse places, of two steps by two, and each place takes the
-//! best of all. Then the places where even that is worst get inequalities of their own, as many as a byte can count.
+//! best of all. Then the places where even that is worst get inequalities of their own, as many as a byte can count. Those
+//! that no place takes make room for others, a few times.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::OnceLock;
 
 use rayon::prelude::*;
 use support::ltc_inequality::LtcInequality;
@@ -23,8 +25,10 @@ pub mod layout;
 /// Lobes between two knots of the table along each coordinate, for which rows are made, and among which each place takes
 /// the best one. Near grazing incidence lobes between two knots are of many places.
 pub const FINENESS: [usize; 2] = [2, 16];
-/// The most lobes that a choice is made for.
-const LOBES: usize = 24;
+/// The most lobes that a choice is made for, of an inequality and among all.
+const LOBES: [usize; 2] = [24, 96];
+/// How often inequalities that no place takes are replaced.
+const REPLACEMENTS: u32 = 3;
 /// The most rows that a byte can count.
 const MOST_ROWS: usize = 256;
 /// Intervals of the proof while choosing, and of what is chosen.
@@ -36,9 +40,22 @@ const LARGEST_SHARE: f64 = 0.9;
 const LEAST_NU: f64 = 1e-7;
 /// The largest angle of incidence, in degrees.
 const MOST_DEGREES: f64 = 89.9;
+/// The least αμ. Lobes below have the matrix of a larger μ.
+const LEAST_WIDTH: f64 = 2.4e-5;
+
+/// By how much larger a bound may be beyond the last knot before grazing incidence.
+const GRAZING_ALLOWANCE: f64 = 1.03;
 
 /// The sizes m₁₁, m₂₂ and m₁₁|b| of M, for a third row of M⁻¹ of unit length.
-pub type Sizes = [f64; 3];
+type Sizes = [f64; 3];
+
+/// A lobe that the table is made for.
+#[derive(Clone, Copy)]
+pub struct Lobe {
+    sizes: Sizes,
+    /// By how much larger than elsewhere its bound may be.
+    allowance: f64,
+}
 
 /// A row before rounding: α₁, α₂, ln ν, the angle of û and the share of α₃.
 type Choice = [f64; 5];
@@ -48,24 +65,45 @@ type Row = [f32; layout::NUMBERS];
 
 /// The bytes of the table.
 pub fn table() -> Vec<u8> {
-    let places = Place::all(FINENESS[0]);
     let coarse = coarse_places();
     let mut rows: Vec<Row> = coarse.par_iter().map(|lobes| row(lobes)).collect();
-    let mut worst: Vec<_> = places
-        .par_iter()
-        .map(|place| (place, place.best(&rows).1))
-        .collect();
-    worst.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+    let places = Place::all(FINENESS[0]);
+    let mut worst = by_quality(&places, &rows);
     worst.truncate(MOST_ROWS - rows.len());
-    rows.par_extend(worst.into_par_iter().map(|(place, _)| row(&place.lobes)));
-    let indices = indices(&rows);
+    rows.par_extend(worst.into_par_iter().map(Place::row));
+    let places = Place::all(FINENESS[1]);
+    for _ in 0..REPLACEMENTS {
+        let taken: BTreeSet<usize> = places.par_iter().map(|place| place.best(&rows).0).collect();
+        let unused: Vec<usize> = (coarse.len()..rows.len())
+            .filter(|i| !taken.contains(i))
+            .collect();
+        let worst = by_quality(&places, &rows);
+        let worst: Vec<_> = unused.into_iter().zip(worst).collect();
+        let made: Vec<_> = worst
+            .into_par_iter()
+            .map(|(i, place)| (i, place.row()))
+            .collect();
+        for (i, row) in made {
+            rows[i] = row;
+        }
+    }
+    let indices = indices(&places, &rows);
     let numbers = rows.into_iter().flatten().flat_map(f32::to_le_bytes);
     indices.into_iter().chain(numbers).collect()
 }
 
+/// The places, those first where the best row is worst.
+fn by_quality<'a>(places: &'a [Place], rows: &[Row]) -> Vec<&'a Place> {
+    let mut worst: Vec<_> = places
+        .par_iter()
+        .map(|place| (place, place.best(rows).1))
+        .collect();
+    worst.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+    worst.into_iter().map(|(place, _)| place).collect()
+}
+
 /// The index of the best row for each place.
-fn indices(rows: &[Row]) -> Vec<u8> {
-    let places = Place::all(FINENESS[1]);
+fn indices(places: &[Place], rows: &[Row]) -> Vec<u8> {
     let best: Vec<usize> = places.par_iter().map(|place| place.best(rows).0).collect();
     // Where there are no lobes, the row of the nearest place that has some.
     let nearest = |index: usize| {
@@ -81,11 +119,11 @@ fn indices(rows: &[Row]) -> Vec<u8> {
 }
 
 /// The lobes of each coarse place that has some. Each group has a row, in this order, before all others.
-pub fn coarse_places() -> Vec<Vec<Sizes>> {
+pub fn coarse_places() -> Vec<Vec<Lobe>> {
     let mut coarse = BTreeMap::new();
-    for sizes in lobes(FINENESS[0]) {
-        let key = steps(place(sizes)).map(|step| step / 2);
-        coarse.entry(key).or_insert_with(Vec::new).push(sizes);
+    for lobe in lobes(FINENESS[0]) {
+        let key = steps(place(lobe.sizes)).map(|step| step / 2);
+        coarse.entry(key).or_insert_with(Vec::new).push(lobe);
     }
     coarse.into_values().collect()
 }
@@ -98,31 +136,42 @@ fn steps(index: usize) -> [usize; 2] {
 /// A place of the table that has lobes.
 pub struct Place {
     pub index: usize,
-    pub lobes: Vec<Sizes>,
+    lobes: Vec<Lobe>,
+    /// Some of the lobes, each with the volume that its bound may have, once they are asked for.
+    allowed: OnceLock<Vec<(Sizes, f64)>>,
 }
 
 impl Place {
     /// All of them, for this many lobes between two knots.
     pub fn all(fineness: usize) -> Vec<Self> {
         let mut groups = BTreeMap::new();
-        for sizes in lobes(fineness) {
-            let group = groups.entry(place(sizes));
-            group.or_insert_with(Vec::new).push(sizes);
+        for lobe in lobes(fineness) {
+            let group = groups.entry(place(lobe.sizes));
+            group.or_insert_with(Vec::new).push(lobe);
         }
-        let places = groups.into_iter();
-        places.map(|(index, lobes)| Self { index, lobes }).collect()
+        let places = groups.into_iter().map(|(index, lobes)| Self {
+            index,
+            lobes,
+            allowed: OnceLock::new(),
+        });
+        places.collect()
+    }
+
+    /// A row for the lobes.
+    fn row(&self) -> Row {
+        row(&self.lobes)
     }
 
     /// The row that is best for the lobes, and the worst quotient of volumes with it.
     pub fn best(&self, rows: &[Row]) -> (usize, f64) {
-        let lobes = some_of(&self.lobes);
+        let allowed = self.allowed.get_or_init(|| some_of(&self.lobes, LOBES[1]));
         let worst = |row: &Row| {
             let [alpha_1, alpha_2, sine, cosine, nu, q, share] = *row;
             let inequality = LtcInequality::from_numbers([alpha_1, alpha_2, sine, cosine, nu]);
-            let ratio = |(sizes, smallest): &(Sizes, f64)| {
-                volume(*sizes, &inequality, q.into(), share.into()) / smallest
+            let ratio = |(sizes, allowed): &(Sizes, f64)| {
+                volume(*sizes, &inequality, q.into(), share.into()) / allowed
             };
-            lobes.iter().map(ratio).fold(0.0, f64::max)
+            allowed.iter().map(ratio).fold(0.0, f64::max)
         };
         let ratios = rows.iter().map(worst).enumerate();
         ratios
@@ -131,11 +180,12 @@ impl Place {
     }
 }
 
-/// Up to [`LOBES`] of these, each with the volume of the smallest ellipsoid.
-fn some_of(lobes: &[Sizes]) -> Vec<(Sizes, f64)> {
-    let count = lobes.len().min(LOBES);
+/// Up to `most` of these, each with the volume of the smallest ellipsoid, times what is allowed.
+fn some_of(lobes: &[Lobe], most: usize) -> Vec<(Sizes, f64)> {
+    let count = lobes.len().min(most);
     let chosen = (0..count).map(|i| lobes[i * lobes.len() / count]);
-    chosen.map(|sizes| (sizes, smallest(sizes))).collect()
+    let allowed = |lobe: Lobe| (lobe.sizes, smallest(lobe.sizes) * lobe.allowance);
+    chosen.map(allowed).collect()
 }
 
 /// The place of M in the table.
@@ -144,7 +194,7 @@ fn place([along, _, slant]: Sizes) -> usize {
 }
 
 /// The lobes at the knots of their table and between, up to [`MOST_DEGREES`].
-fn lobes(fineness: usize) -> Vec<Sizes> {
+fn lobes(fineness: usize) -> Vec<Lobe> {
     let last = fineness * (table::KNOTS - 1);
     let most = (1.0 - MOST_DEGREES.to_radians().cos()).sqrt();
     let mut lobes = Vec::new();
@@ -153,7 +203,14 @@ fn lobes(fineness: usize) -> Vec<Sizes> {
         for j in (i % 2..=last).step_by(2) {
             let root = i as f64 / last as f64;
             let incidence = (j as f64 / last as f64).min(most);
-            lobes.push(sizes(root * root, table::matrix(root, incidence)));
+            let alpha = root * root;
+            if alpha * (1.0 - incidence * incidence) >= LEAST_WIDTH {
+                let is_grazing = j > fineness * (table::KNOTS - 2);
+                lobes.push(Lobe {
+                    sizes: sizes(alpha, table::matrix(root, incidence)),
+                    allowance: if is_grazing { GRAZING_ALLOWANCE } else { 1.0 },
+                });
+            }
         }
     }
     lobes
@@ -167,8 +224,8 @@ fn sizes(alpha: f64, [a, b, d, e]: Elements) -> Sizes {
 }
 
 /// The row for these lobes.
-pub fn row(lobes: &[Sizes]) -> Row {
-    let chosen = some_of(lobes);
+pub fn row(lobes: &[Lobe]) -> Row {
+    let chosen = some_of(lobes, LOBES[0]);
     let count = chosen.len();
     let cost = |choice: &[f64]| {
         let choice = [choice[0], choice[1], choice[2], choice[3], choice[4]];
@@ -176,8 +233,8 @@ pub fn row(lobes: &[Sizes]) -> Row {
             return 1e30;
         };
         let q = inequality.proved_q(INTERVALS[0]);
-        let excess = |(sizes, smallest): &(Sizes, f64)| {
-            (volume(*sizes, &inequality, q, choice[4]) / smallest - 1.0).powi(6)
+        let excess = |(sizes, allowed): &(Sizes, f64)| {
+            (volume(*sizes, &inequality, q, choice[4]) / allowed - 1.0).powi(6)
         };
         chosen.iter().map(excess).sum::<f64>()
     };

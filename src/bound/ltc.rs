@@ -52,15 +52,15 @@ use super::{BoundStrategy, Bounded, Ellipsoid, Tight, ltc_rows};
 use crate::lobe::{Lobe, LtcLobe};
 use crate::num::{Double, Single, Vector3};
 
-/// Pays for rounding axes and centre to `f32`, and for what the image of a direction is off by in the value, in units of u
-/// times the farthest point's distance.
+/// Pays for rounding axes and centre to `f32`, and for what the image of a direction is off by in the value, in units
+/// of u times the farthest point's distance.
 const POINT_ROUNDINGS: f64 = 10.0;
 /// Pays for the rounding of K, for its product with a semi-axis, and for all else that is rounded in the value.
 const SEMI_AXIS_ROUNDINGS: u16 = 64;
 
-/// Bounds the lobe by an ellipsoid, with its part below the horizon. The volume is on average 1.03 times that
-/// of the smallest around the isosurface, and at most 1.1 times that at the knots of the lobes' table, up to 88°. Beyond, it is
-/// up to 1.2 times that for α ≥ 0.01, and up to 1.41 times below.
+/// Bounds the lobe by an ellipsoid, with its part below the horizon. The volume is on average 1.03 times that of the
+/// smallest around the isosurface, at most 1.1 times that at the knots of the lobes' table, up to 88°, and 1.15 times
+/// beyond.
 impl BoundStrategy<LtcLobe> for Tight {
     type Shape = Ellipsoid;
 
