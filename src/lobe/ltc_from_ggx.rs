@@ -91,18 +91,13 @@ impl<N: Single> GgxSurfaces<N> {
         let half_delta = slope / (mu + (mu * mu + slope * slope).sqrt());
         let tangents = (incidence * over_root + half_delta) * 0.5;
         let [[a, b, d, e], [n_a, f_a, ..]] = N::per_lane_quads(
-            [
-                alpha.sqrt(),
-                tangents,
-                resolved.sqrt(),
-                incidence.min(most_incidence),
-            ],
+            [resolved.sqrt(), incidence.min(most_incidence), tangents, mu],
             is_lit,
             #[inline(always)]
-            |[root, tangents, resolved_root, incidence], _| {
+            |[root, incidence, tangents, _], _| {
                 let [n_a, f_a] = ltc_table::albedos(root.into(), tangents.into());
                 [
-                    ltc_table::matrix(resolved_root.into(), incidence.into()).map(|x| x as f32),
+                    ltc_table::matrix(root.into(), incidence.into()).map(|x| x as f32),
                     [n_a as f32, f_a as f32, 0.0, 0.0],
                 ]
             },
@@ -132,7 +127,7 @@ impl<N: Single> GgxSurfaces<N> {
 #[inline(always)]
 fn resolved<N: Single>(alpha: N) -> (N, N) {
     let alpha = Real::max(alpha, alpha.splat(LEAST_ROUGHNESS));
-    let least_cosine = alpha.recip() * LEAST_WIDTH;
+    let least_cosine = alpha.splat(LEAST_WIDTH) / alpha;
     (alpha, least_cosine.one_minus().sqrt())
 }
 
@@ -157,15 +152,24 @@ impl<D: Double> Matrix<D> {
     /// The most by which rounding moves the image of a direction in the value, over a lower bound of the length of that
     /// image, for a positive determinant.
     pub fn rounding(&self) -> D {
-        let [m11, m13, m31, m33] = self.elements;
-        let (first, third) = (m11 * m11 + m13 * m13, m31 * m31 + m33 * m33);
-        let one = m11.splat(1.0);
-        // As the rows are stored, times 1/(m₁₁m₃₃ − m₁₃m₃₁).
-        let over = one / (self.determinant * self.determinant);
-        let moved = rounding_of_value([first * over, over, third * over]) * self.determinant;
+        let squares = self.squared_lengths();
+        let [first, _, third] = squares;
+        let one = first.splat(1.0);
         // Of the greatest singular value the root is an upper bound.
-        let least = (self.determinant / (first + third).sqrt()).min(one);
-        moved / least
+        let least = (one / (first + third).sqrt()).min(one);
+        rounding_of_value(squares) * self.determinant / least
+    }
+
+    /// The squared lengths of the rows as they are stored, times 1/(m₁₁m₃₃ − m₁₃m₃₁).
+    #[inline(always)]
+    fn squared_lengths(&self) -> [D; 3] {
+        let [m11, m13, m31, m33] = self.elements;
+        let second = m11.splat(1.0) / (self.determinant * self.determinant);
+        [
+            (m11 * m11 + m13 * m13) * second,
+            second,
+            (m31 * m31 + m33 * m33) * second,
+        ]
     }
 
     /// The product of the lengths of both rows.
@@ -213,7 +217,7 @@ impl<D: Double> Matrix<D> {
             shear: N::narrow((m11 * m31 + m13 * m33) * over),
             image_error: N::narrow(factor.zero()),
         };
-        lobes.with_image_error()
+        lobes.with_image_error(self.squared_lengths())
     }
 }
 

@@ -169,11 +169,10 @@ impl<N: Single> LtcLobes<N> {
         [first, third.cross(across), third]
     }
 
-    /// With the [error](Self::image_error) of its rows.
+    /// With the [error](Self::image_error) for these squared lengths of the rows of M⁻¹.
     #[inline(always)]
-    pub fn with_image_error(self) -> Self {
-        let [x, second, z] = self.rows().map(Vector3::length_squared);
-        let sum = x + second + z;
+    pub fn with_image_error(self, [first, second, third]: [N::Double; 3]) -> Self {
+        let sum = first + second + third;
         let norm = sum.sqrt();
         // The determinant, `second`, over the product of the greater singular values, of which half the sum is an upper
         // bound.
