@@ -40,9 +40,6 @@ const LARGEST_SHARE: f64 = 0.9;
 const LEAST_NU: f64 = 1e-7;
 /// The largest angle of incidence, in degrees.
 const MOST_DEGREES: f64 = 89.9;
-/// The least αμ. Lobes below have the matrix of a larger μ.
-const LEAST_WIDTH: f64 = 2.4e-5;
-
 /// By how much larger a bound may be beyond the last knot before grazing incidence.
 const GRAZING_ALLOWANCE: f64 = 1.03;
 
@@ -204,7 +201,8 @@ fn lobes(fineness: usize) -> Vec<Lobe> {
             let root = i as f64 / last as f64;
             let incidence = (j as f64 / last as f64).min(most);
             let alpha = root * root;
-            if alpha * (1.0 - incidence * incidence) >= LEAST_WIDTH {
+            // Narrower lobes have the matrix of a larger μ.
+            if alpha * (1.0 - incidence * incidence) >= f64::from(table::LEAST_WIDTH) {
                 let is_grazing = j > fineness * (table::KNOTS - 2);
                 lobes.push(Lobe {
                     sizes: sizes(alpha, table::matrix(root, incidence)),

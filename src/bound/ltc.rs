@@ -49,7 +49,7 @@ use super::ellipsoid::Ellipsoids;
 use super::principal_axes::ellipsoids_along;
 use super::shape::{Quads, padded};
 use super::{BoundStrategy, Bounded, Ellipsoid, Tight, ltc_rows};
-use crate::lobe::{Lobe, LtcLobe};
+use crate::lobe::LtcLobe;
 use crate::num::{Double, Single, Vector3};
 
 /// Pays for rounding axes and centre to `f32`, and for what the image of a direction is off by in the value, in units
@@ -70,25 +70,10 @@ impl BoundStrategy<LtcLobe> for Tight {
 
     #[inline(always)]
     fn to_quads(&self, lobe: &LtcLobe) -> (Quads<f32>, ()) {
-        let [
-            _,
-            _,
-            _,
-            amplitude,
-            x_x,
-            x_y,
-            x_z,
-            z_x,
-            z_y,
-            z_z,
-            _,
-            shear,
-            ..,
-        ] = lobe.numbers();
-        (
-            padded([[x_x, x_y, x_z, amplitude], [z_x, z_y, z_z, shear]]),
-            (),
-        )
+        let lobe = lobe.lanes();
+        let (x, z) = (lobe.across, lobe.third);
+        let quads = [[x.x, x.y, x.z, lobe.amplitude], [z.x, z.y, z.z, lobe.shear]];
+        (padded(quads), ())
     }
 
     #[inline(always)]

@@ -3,14 +3,16 @@
 //! Where few lights touch a tile, a vector of lights has idle lanes at each tile. Neighbours share most of their lights:
 //! of a vector of tiles, a light that touches one touches most.
 
+use alloc::vec::Vec;
+
 use fearless_simd::{Simd, SimdBase, SimdMask};
 
-use super::TileDepths;
 use super::batch::grow;
 use super::block::Output;
 use super::lanes::{LANES, Lanes, load, numbers_from, parts, write_chosen};
 use super::tile_depths::{Area, NONE, is_none};
-use super::tile_lists::{Chunk, ListWriter};
+use super::tile_lists::Chunk;
+use super::{CullCounters, TileDepths};
 use crate::num::{F32Lanes, Real};
 use crate::touch::BoxTest;
 use crate::view::ViewBounds;
@@ -75,26 +77,51 @@ fn hull_of_lanes<S: Simd>(bounds: &ViewBounds<F32Lanes<S>>) -> ViewBounds<F32Lan
     }
 }
 
-impl ListWriter {
-    /// Writes the lists of the tiles of `area`, of the lights of `chunks`. Returns how many tiles are empty.
+/// Makes the lists of as many tiles at a time as there are lanes.
+#[derive(Clone, Debug)]
+pub(super) struct LaneWriter {
+    /// The lights whose bounds touch what holds the tiles: their places in the chunks, then their numbers.
+    lights: Vec<u32>,
+    /// The bits of the lanes whose tiles each of them touches.
+    touched: Vec<u32>,
+}
+
+impl LaneWriter {
+    pub const fn new() -> Self {
+        Self {
+            lights: Vec::new(),
+            touched: Vec::new(),
+        }
+    }
+
+    /// The memory in use, with what is to spare.
+    #[cfg(all(test, feature = "rayon"))]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.lights[..]) + size_of_val(&self.touched[..])
+    }
+
+    /// Writes the lists of the tiles of `area`, which have one depth interval, for the lights of `chunks`.
     #[inline(always)]
-    pub fn write_tiles<S: Simd, P: BoxTest>(
+    pub fn write<S: Simd, P: BoxTest>(
         &mut self,
         simd: S,
         chunks: &[Chunk<P>],
         tiles: &TileDepths,
         area: Area,
         output: &mut Output,
-    ) -> u64 {
-        let mut empty = 0;
+        counters: &mut CullCounters,
+    ) {
+        let tests = (chunks.len() * LANES) as u64;
         let mut lanes = TilesInLanes::EMPTY;
         let last = area.max.map(|end| end - 1);
         for y in area.min[1]..area.max[1] {
             for x in area.min[0]..area.max[0] {
                 let depths = tiles.hull(x, y);
                 if is_none(depths) {
-                    empty += 1;
+                    counters.empty += 1;
                 } else {
+                    counters.tile_tests += tests;
+                    counters.box_tests += tests;
                     let slot = output.window.slot([x, y], 1);
                     lanes.push([tiles.across(x), tiles.down(y), depths], slot);
                 }
@@ -104,7 +131,6 @@ impl ListWriter {
                 }
             }
         }
-        empty
     }
 
     #[inline(always)]
@@ -122,15 +148,15 @@ impl ListWriter {
         }
         // Bits of the tiles that each light touches. Whole vectors are read.
         let room = count + S::u32s::LEN;
-        grow(&mut self.lists, room, 0);
-        let (places, touched) = (&mut self.candidates[..room], &mut self.lists[..room]);
-        for (place, touched) in places[..count].iter_mut().zip(touched.iter_mut()) {
-            let (fields, number) =
-                chunks[*place as usize / LANES].splat(simd, *place as usize % LANES);
+        grow(&mut self.touched, room, 0);
+        let (lights, touched) = (&mut self.lights[..room], &mut self.touched[..room]);
+        for (light, touched) in lights[..count].iter_mut().zip(touched.iter_mut()) {
+            let place = *light as usize;
+            let (fields, number) = chunks[place / LANES].splat(simd, place % LANES);
             let outline = P::outline(&fields, tiles.across, tiles.down);
             let meet = P::bounds_of(&fields).meet(&tiles);
             let touching = meet & !P::misses(&fields, &outline, tiles.depths);
-            (*place, *touched) = (number, touching.to_bitmask() as u32);
+            (*light, *touched) = (number, touching.to_bitmask() as u32);
         }
         touched[count..].fill(0);
         for (lane, slot) in lanes.slots[..lanes.len.min(LANES)].iter().enumerate() {
@@ -140,15 +166,14 @@ impl ListWriter {
                     |lanes: &[u32]| S::u32s::from_slice(simd, &lanes[first..][..S::u32s::LEN]);
                 let bit = S::u32s::splat(simd, 1 << lane);
                 let touches = (load(touched) & bit).simd_eq(bit);
-                len += write_chosen::<S>(load(places), touches, &mut list[len..]);
+                len += write_chosen::<S>(load(lights), touches, &mut list[len..]);
             }
             output.lists.set_range(*slot, 0..len);
             output.lists.advance(len);
         }
     }
 
-    /// Writes the places in `chunks` of the lights whose bounds meet `hull` to the front of the candidates. Returns their
-    /// number.
+    /// Writes the places in `chunks` of the lights whose bounds meet `hull` to the front of `lights`. Returns their number.
     #[inline(always)]
     fn find_lights<S: Simd, P: BoxTest>(
         &mut self,
@@ -156,13 +181,13 @@ impl ListWriter {
         chunks: &[Chunk<P>],
         hull: &ViewBounds<F32Lanes<S>>,
     ) -> usize {
-        grow(&mut self.candidates, (chunks.len() + 1) * LANES, 0);
+        grow(&mut self.lights, (chunks.len() + 1) * LANES, 0);
         let mut count = 0;
         for (index, chunk) in chunks.iter().enumerate() {
             for part in 0..parts::<S>() {
                 let places = numbers_from(simd, index * LANES + part * S::u32s::LEN);
                 let meet = P::bounds_of(&chunk.load(simd, part)).meet(hull);
-                count += write_chosen::<S>(places, meet, &mut self.candidates[count..]);
+                count += write_chosen::<S>(places, meet, &mut self.lights[count..]);
             }
         }
         count

@@ -11,6 +11,7 @@ use super::lanes::{
 };
 use super::select::Places;
 use super::tile_depths::{Area, is_none};
+use super::tile_lanes::LaneWriter;
 use super::{CullCounters, TileDepths};
 use crate::num::F32Lanes;
 use crate::project::Projected;
@@ -59,6 +60,7 @@ impl<P: Projected> Chunk<P> {
 pub(super) struct TileLists<P: BoxTest> {
     chunks: Vec<Chunk<P>>,
     writer: ListWriter,
+    lane_writer: LaneWriter,
 }
 
 impl<P: BoxTest> TileLists<P> {
@@ -70,13 +72,16 @@ impl<P: BoxTest> TileLists<P> {
                 lists: Vec::new(),
                 lens: Vec::new(),
             },
+            lane_writer: LaneWriter::new(),
         }
     }
 
     /// The memory in use, with what is to spare.
     #[cfg(all(test, feature = "rayon"))]
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.chunks[..]) + size_of_val(&self.writer.lists[..])
+        size_of_val(&self.chunks[..])
+            + size_of_val(&self.writer.lists[..])
+            + self.lane_writer.bytes()
     }
 
     /// Writes the lists of the tiles of `area`: those of the lights at `places` that touch each.
@@ -98,10 +103,17 @@ impl<P: BoxTest> TileLists<P> {
             || self.gather(simd, scene, places, output.numbers),
         );
         let chunks = &self.chunks[..places.len().div_ceil(LANES)];
-        let writer = &mut self.writer;
+        let (writer, lane_writer) = (&mut self.writer, &mut self.lane_writer);
+        let are_in_lanes = scene.tiles.intervals() == 1 && area.len() >= S::u32s::LEN;
         simd.vectorize(
             #[inline(always)]
-            || writer.write(simd, chunks, scene.tiles, area, output, counters),
+            || {
+                if are_in_lanes {
+                    lane_writer.write(simd, chunks, scene.tiles, area, output, counters);
+                } else {
+                    writer.write(simd, chunks, scene.tiles, area, output, counters);
+                }
+            },
         );
     }
 
@@ -128,14 +140,13 @@ impl<P: BoxTest> TileLists<P> {
     }
 }
 
-/// Makes the lists of one tile at a time, or of one in each lane.
+/// Makes the lists of one tile at a time.
 #[derive(Clone, Debug)]
-pub(super) struct ListWriter {
-    /// The vectors that have a light whose bounds touch the tile. Where lanes have tiles, the lights instead.
-    pub(super) candidates: Vec<u32>,
-    /// The list of each depth interval, all with the same room. Where lanes have tiles, the bits of those that each light
-    /// touches.
-    pub(super) lists: Vec<u32>,
+struct ListWriter {
+    /// The vectors that have a light whose bounds touch the tile.
+    candidates: Vec<u32>,
+    /// The list of each depth interval, all with the same room.
+    lists: Vec<u32>,
     /// The length of each list. Zero between tiles.
     lens: Vec<usize>,
 }
@@ -154,14 +165,6 @@ impl ListWriter {
     ) {
         let intervals = tiles.intervals() as usize;
         let vectors = chunks.len() * parts::<S>();
-        if intervals == 1 && area.len() >= S::u32s::LEN {
-            let empty = self.write_tiles(simd, chunks, tiles, area, output);
-            let tests = (area.len() as u64 - empty) * (vectors * S::u32s::LEN) as u64;
-            counters.empty += empty;
-            counters.tile_tests += tests;
-            counters.box_tests += tests;
-            return;
-        }
         // Whole vectors are written.
         let room = (vectors + 1) * S::u32s::LEN;
         grow(&mut self.candidates, vectors, 0);

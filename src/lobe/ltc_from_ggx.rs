@@ -50,10 +50,6 @@ impl GgxSurfaces<f32> {
     }
 }
 
-/// The least roughness of a matrix, and the least product αμ.
-const LEAST_ROUGHNESS: f32 = 3e-5;
-const LEAST_WIDTH: f32 = 2.4e-5;
-
 /// The least share of a cosine above the horizon. Callers' lobes may lie almost wholly below it.
 const LEAST_SHARE: f64 = 1e-6;
 
@@ -126,8 +122,8 @@ impl<N: Single> GgxSurfaces<N> {
 /// matrix is that of a greater μ. So rounding moves no image of a direction by more than 1/50 of its length.
 #[inline(always)]
 fn resolved<N: Single>(alpha: N) -> (N, N) {
-    let alpha = Real::max(alpha, alpha.splat(LEAST_ROUGHNESS));
-    let least_cosine = alpha.splat(LEAST_WIDTH) / alpha;
+    let alpha = Real::max(alpha, alpha.splat(ltc_table::LEAST_ROUGHNESS));
+    let least_cosine = alpha.splat(ltc_table::LEAST_WIDTH) / alpha;
     (alpha, least_cosine.one_minus().sqrt())
 }
 

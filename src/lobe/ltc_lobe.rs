@@ -47,7 +47,7 @@ use crate::num::{Single, Vector3};
 ///
 /// # When it pays
 ///
-/// The value takes 0.6 of the time of a [`GgxLobe`](crate::GgxLobe)'s with Schlick's factor, and half of it in
+/// The value takes 0.6 of the time of a [`GgxLobe`](crate::GgxLobe)'s with Schlick's factor, and on Zen 4 half of it in
 /// lanes. Direction, roulette, sum, and a test of lights that are too faint are the same for both. But the lobe takes
 /// longer to make: 20 ns, sixteen at a time, as `LtcLobe::many` makes them with the feature `cull`, and 35 ns one by
 /// one. So it pays at lights that are made once. At receivers, which are made anew in each frame, and whose lobe is

@@ -8,6 +8,9 @@
 pub(crate) const KNOTS: usize = 64;
 /// The largest value of each element of a matrix: A, B, D and E. D is not positive.
 pub(crate) const MATRIX_SCALES: [f64; 4] = [1.0, 1.25, -2.0, 2.0];
+/// The least roughness α of a matrix that is looked up, and the least product αμ.
+pub(crate) const LEAST_ROUGHNESS: f32 = 3e-5;
+pub(crate) const LEAST_WIDTH: f32 = 2.4e-5;
 /// The count of the largest value.
 const COUNTS: f64 = 65535.0;
 
