@@ -5,7 +5,7 @@ use stochastic_light_culling::{
     Dielectric, Direction, GgxLobe, Lobe, LtcLobe, NoFresnel, PointBlock, RadianceEstimator,
     Roulette, ShadingBatch, Vpl, Xi, glam::Vec3,
 };
-use support::generators::{cases, log_uniform, unit_vector};
+use support::generators::{self, cases, log_uniform, unit_vector};
 
 use crate::transformed::surface;
 
@@ -102,6 +102,20 @@ proptest! {
         };
         let mirror = mirror(incidence.normal, incidence.incoming);
         drawn.light(lobe, drawn.point(mirror, ggx.roughness()))?;
+    }
+
+    /// The narrower a lobe, the more rounding moves the image of a direction.
+    #[test]
+    fn narrow_transformed_cosines_are_left_out_as_they_round(
+        matrix in generators::ltc_matrix(),
+        (_, _, incidence) in surface(),
+        image in unit_vector(),
+        drawn in drawn(),
+    ) {
+        let lobe = LtcLobe::with_matrix(matrix, 1.0, incidence).unwrap();
+        let way = lobe.inverse_matrix().inverse() * image.to_f32();
+        let point = way.normalize_or_zero() * drawn.distance;
+        drawn.light(lobe, point)?;
     }
 
     /// Where all of F, G2 and D are what the test takes them to be at most, as without a Fresnel factor along the normal,

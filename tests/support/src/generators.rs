@@ -218,7 +218,7 @@ pub fn sharpness() -> impl Strategy<Value = f32> {
 }
 
 /// The elements of a matrix that a caller may give to a transformed cosine.
-fn ltc_matrix() -> impl Strategy<Value = [f32; 4]> {
+pub fn ltc_matrix() -> impl Strategy<Value = [f32; 4]> {
     let length = || log_uniform(0.1, 1e5);
     let between = up_to_one(2e-4).prop_map(|share| 0.5 * std::f64::consts::PI * f64::from(share));
     let any = (0.0..TAU, between, length(), length()).prop_map(|(angle, between, first, third)| {
