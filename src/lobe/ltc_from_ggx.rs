@@ -211,7 +211,6 @@ impl<D: Double> Matrix<D> {
             across: Vector3::narrow(across),
             third: Vector3::narrow(third),
             shear: N::narrow((m11 * m31 + m13 * m33) * over),
-            image_error: N::narrow(factor.zero()),
         };
         lobes.with_image_error(self.squared_lengths())
     }

@@ -89,8 +89,6 @@ pub struct LtcLobe {
     rows: [Vec3; 2],
     /// The factor of the third row in the first.
     shear: f32,
-    /// The most by which rounding moves M⁻¹ω.
-    image_error: f32,
 }
 
 /// The most by which rounding may move the image of a direction under a caller's matrix, as a share of its length.
@@ -113,7 +111,6 @@ impl LtcLobe {
             amplitude: lane.amplitude,
             rows: [lane.across.into(), lane.third.into()],
             shear: lane.shear,
-            image_error: lane.image_error,
         }
     }
 
@@ -217,7 +214,6 @@ impl LtcLobe {
             across: self.rows[0].into(),
             third: self.rows[1].into(),
             shear: self.shear,
-            image_error: self.image_error,
         }
     }
 }

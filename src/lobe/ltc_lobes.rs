@@ -1,6 +1,6 @@
 //! The value of an [`LtcLobe`](super::LtcLobe), for one lobe in each lane.
 
-use super::LobeNumbers;
+use super::{FIRST_NUMBERS, LobeNumbers};
 use crate::num::{Real, Single, UNIT_ROUNDOFF, Vector3};
 
 /// Budget for the images of a direction and of a way along it, in units of u times the norm of M⁻¹: 18, times
@@ -19,7 +19,9 @@ const LEAST: f32 = 8.673_617_4e-19;
 const LEAST_FACTOR: f32 = 7.523_164e-37;
 
 /// How many numbers a lobe has.
-pub(crate) const LTC_NUMBERS: usize = 12;
+pub(crate) const LTC_NUMBERS: usize = 11;
+/// With more, a light would take a second cache line.
+const _: () = assert!(LTC_NUMBERS <= FIRST_NUMBERS);
 
 /// An [`LtcLobe`](super::LtcLobe) in each lane.
 ///
@@ -28,6 +30,7 @@ pub(crate) const LTC_NUMBERS: usize = 12;
 #[derive(Clone, Copy)]
 pub(crate) struct LtcLobes<N> {
     pub normal: Vector3<N>,
+    /// The factor of z/‖M⁻¹ω‖⁴. Its last five bits hold the [image error](Self::image_error).
     pub amplitude: N,
     /// What of the first row of M⁻¹ is perpendicular to the third, but for rounding.
     pub across: Vector3<N>,
@@ -35,8 +38,6 @@ pub(crate) struct LtcLobes<N> {
     pub third: Vector3<N>,
     /// The factor of the third row in the first.
     pub shear: N,
-    /// The most by which rounding moves M⁻¹ω. Infinite if the test of faint lights is not for this lobe.
-    pub image_error: N,
 }
 
 impl<N: Single> LtcLobes<N> {
@@ -53,7 +54,6 @@ impl<N: Single> LtcLobes<N> {
             z_x,
             z_y,
             z_z,
-            image_error,
             shear,
             ..,
         ] = *numbers;
@@ -63,7 +63,6 @@ impl<N: Single> LtcLobes<N> {
             across: Vector3::new(x_x, x_y, x_z),
             third: Vector3::new(z_x, z_y, z_z),
             shear,
-            image_error,
         }
     }
 
@@ -71,9 +70,9 @@ impl<N: Single> LtcLobes<N> {
     #[inline(always)]
     pub fn numbers(&self) -> [N; LTC_NUMBERS] {
         let (n, x, z) = (self.normal, self.across, self.third);
-        let (amplitude, error, shear) = (self.amplitude, self.image_error, self.shear);
+        let (amplitude, shear) = (self.amplitude, self.shear);
         [
-            n.x, n.y, n.z, amplitude, x.x, x.y, x.z, z.x, z.y, z.z, error, shear,
+            n.x, n.y, n.z, amplitude, x.x, x.y, x.z, z.x, z.y, z.z, shear,
         ]
     }
 
@@ -87,25 +86,20 @@ impl<N: Single> LtcLobes<N> {
             across: Vector3::new(one, zero, zero),
             third: Vector3::new(zero, zero, one),
             shear: zero,
-            image_error: zero,
         }
     }
 
     /// `yes` where `mask` holds, and `no`, with the same normal, elsewhere.
     #[inline(always)]
     pub fn select(mask: N::Mask, yes: Self, no: Self) -> Self {
-        let [amplitude, shear, image_error] = N::select_all(
-            mask,
-            [yes.amplitude, yes.shear, yes.image_error],
-            [no.amplitude, no.shear, no.image_error],
-        );
+        let [amplitude, shear] =
+            N::select_all(mask, [yes.amplitude, yes.shear], [no.amplitude, no.shear]);
         Self {
             normal: no.normal,
             amplitude,
             across: Vector3::select(mask, yes.across, no.across),
             third: Vector3::select(mask, yes.third, no.third),
             shear,
-            image_error,
         }
     }
 
@@ -148,7 +142,7 @@ impl<N: Single> LtcLobes<N> {
         let x = z.times_plus(self.shear, across);
         let image = Vector3::new(x, y, z);
         let length = length_squared.sqrt();
-        let error = self.image_error * length;
+        let error = self.image_error() * length;
         let squared = (-error).times_plus(error, image.near_dot(image));
         let factor = flux * self.amplitude + LEAST_FACTOR;
         let least_product = (flux + 1.0) * (flux + 1.0) * LEAST;
@@ -169,6 +163,13 @@ impl<N: Single> LtcLobes<N> {
         [first, third.cross(across), third]
     }
 
+    /// The most by which rounding moves M⁻¹ω, rounded up to a power of two. Infinite if the test of faint lights is not
+    /// for this lobe.
+    #[inline(always)]
+    fn image_error(&self) -> N {
+        self.amplitude.power_in_last_bits()
+    }
+
     /// With the [error](Self::image_error) for these squared lengths of the rows of M⁻¹.
     #[inline(always)]
     pub fn with_image_error(self, [first, second, third]: [N::Double; 3]) -> Self {
@@ -183,9 +184,12 @@ impl<N: Single> LtcLobes<N> {
             & norm.le(sum.splat(longest))
             & peak.le(least * least * LARGEST_PEAK);
         let error = N::narrow(norm * (IMAGE_ROUNDINGS * f64::from(UNIT_ROUNDOFF)));
-        let image_error = N::select(is_in_range, error, self.amplitude.splat(f32::INFINITY));
+        let amplitude = self.amplitude;
+        let error = N::select(is_in_range, error, amplitude.splat(f32::INFINITY));
+        let with_error = amplitude.with_power_in_last_bits(error);
         Self {
-            image_error,
+            // An empty lobe stays empty.
+            amplitude: N::select(amplitude.is_positive(), with_error, amplitude),
             ..self
         }
     }

@@ -3,11 +3,14 @@
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use fearless_simd::{
-    ExtractToken, MaskNarrow, MaskWiden, Select, Simd, SimdBase, SimdFloat, SimdMask, SimdNarrow,
-    SimdWiden,
+    Bytes, ExtractToken, Select, Simd, SimdBase, SimdFloat, SimdMask, SimdNarrow, SimdWiden,
 };
 
-use super::real::{Quad, Real, Single};
+use super::double_lanes::{F64Lanes, max, min};
+use super::real::{
+    EXPONENT_SHIFT, FRACTION_BITS, POWER_BASE, POWER_BITS, POWER_SCALE, POWER_UNIT, Quad, Real,
+    Single,
+};
 
 /// The number of lanes of the widest vectors.
 pub(crate) const MAX_LANES: usize = 16;
@@ -15,13 +18,6 @@ pub(crate) const MAX_LANES: usize = 16;
 /// An `f32` in each lane.
 #[derive(Clone, Copy, Debug)]
 pub struct F32Lanes<S: Simd>(pub S::f32s);
-
-/// An `f64` in each lane: one vector for the lower half of the lanes, and one for the upper half.
-#[derive(Clone, Copy, Debug)]
-pub struct F64Lanes<S: Simd> {
-    low: S::f64s,
-    high: S::f64s,
-}
 
 impl<S: Simd> F32Lanes<S> {
     /// Puts `value` into each lane.
@@ -43,36 +39,12 @@ macro_rules! operators {
             }
         }
 
-        impl<S: Simd> $operator for F64Lanes<S> {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $function(self, other: Self) -> Self {
-                Self {
-                    low: self.low $sign other.low,
-                    high: self.high $sign other.high,
-                }
-            }
-        }
-
         impl<S: Simd> $operator<f32> for F32Lanes<S> {
             type Output = Self;
 
             #[inline(always)]
             fn $function(self, other: f32) -> Self {
                 Self(self.0 $sign other)
-            }
-        }
-
-        impl<S: Simd> $operator<f64> for F64Lanes<S> {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $function(self, other: f64) -> Self {
-                Self {
-                    low: self.low $sign other,
-                    high: self.high $sign other,
-                }
             }
         }
     )*};
@@ -91,40 +63,6 @@ impl<S: Simd> Neg for F32Lanes<S> {
     #[inline(always)]
     fn neg(self) -> Self {
         Self(-self.0)
-    }
-}
-
-impl<S: Simd> Neg for F64Lanes<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self {
-            low: -self.low,
-            high: -self.high,
-        }
-    }
-}
-
-/// Whether the vector instructions for max and min return their second operand for NaN, as [`Real`] requires.
-/// On processors other than x86 they return NaN.
-const NATIVE_MAX_PASSES_NAN_OVER: bool = cfg!(any(target_arch = "x86", target_arch = "x86_64"));
-
-#[inline(always)]
-fn max<S: Simd, V: SimdFloat<S>>(a: V, other: V) -> V {
-    if NATIVE_MAX_PASSES_NAN_OVER {
-        a.max(other)
-    } else {
-        a.simd_gt(other).select(a, other)
-    }
-}
-
-#[inline(always)]
-fn min<S: Simd, V: SimdFloat<S>>(a: V, other: V) -> V {
-    if NATIVE_MAX_PASSES_NAN_OVER {
-        a.min(other)
-    } else {
-        a.simd_lt(other).select(a, other)
     }
 }
 
@@ -205,107 +143,6 @@ impl<S: Simd> Real for F32Lanes<S> {
     }
 }
 
-impl<S: Simd> Real for F64Lanes<S> {
-    type Element = f64;
-    type Mask = S::mask32s;
-
-    #[inline(always)]
-    fn splat(self, value: f64) -> Self {
-        let value = S::f64s::splat(self.low.token(), value);
-        Self {
-            low: value,
-            high: value,
-        }
-    }
-
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self {
-            low: self.low.abs(),
-            high: self.high.abs(),
-        }
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self {
-            low: self.low.sqrt(),
-            high: self.high.sqrt(),
-        }
-    }
-
-    #[inline(always)]
-    fn copysign(self, sign: Self) -> Self {
-        Self {
-            low: self.low.copysign(sign.low),
-            high: self.high.copysign(sign.high),
-        }
-    }
-
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        Self {
-            low: max(self.low, other.low),
-            high: max(self.high, other.high),
-        }
-    }
-
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        Self {
-            low: min(self.low, other.low),
-            high: min(self.high, other.high),
-        }
-    }
-
-    #[inline(always)]
-    fn gt(self, other: Self) -> S::mask32s {
-        let low = self.low.simd_gt(other.low);
-        low.narrow(self.high.simd_gt(other.high))
-    }
-
-    #[inline(always)]
-    fn le(self, other: Self) -> S::mask32s {
-        let low = self.low.simd_le(other.low);
-        low.narrow(self.high.simd_le(other.high))
-    }
-
-    #[inline(always)]
-    fn eq(self, other: Self) -> S::mask32s {
-        let low = self.low.simd_eq(other.low);
-        low.narrow(self.high.simd_eq(other.high))
-    }
-
-    #[inline(always)]
-    fn is_finite(self) -> S::mask32s {
-        self.low.is_finite().narrow(self.high.is_finite())
-    }
-
-    #[inline(always)]
-    fn select_all<const K: usize>(
-        mask: S::mask32s,
-        mut yes: [Self; K],
-        no: [Self; K],
-    ) -> [Self; K] {
-        let (low, high) = mask.widen();
-        for (yes, no) in yes.iter_mut().zip(no) {
-            yes.low = low.select(yes.low, no.low);
-            yes.high = high.select(yes.high, no.high);
-        }
-        yes
-    }
-
-    #[inline(always)]
-    fn is_known_false(_: S::mask32s) -> bool {
-        false
-    }
-
-    #[inline(always)]
-    fn any(mask: S::mask32s) -> bool {
-        mask.any_true()
-    }
-}
-
 impl<S: Simd> Single for F32Lanes<S> {
     const LANES: usize = S::f32s::LEN;
 
@@ -325,6 +162,20 @@ impl<S: Simd> Single for F32Lanes<S> {
     #[inline(always)]
     fn times_plus(self, factor: Self, addend: Self) -> Self {
         Self(self.0.mul_add(factor.0, addend.0))
+    }
+
+    #[inline(always)]
+    fn power_in_last_bits(self) -> Self {
+        let exponent = (self.0.bitcast::<S::u32s>() & POWER_BITS) << EXPONENT_SHIFT;
+        Self((exponent | POWER_BASE).bitcast()) * POWER_UNIT
+    }
+
+    #[inline(always)]
+    fn with_power_in_last_bits(self, least: Self) -> Self {
+        let scaled = (least * POWER_SCALE).max(self.splat(f32::from_bits(POWER_BASE)));
+        let exponent = (scaled.0.bitcast::<S::u32s>() + FRACTION_BITS) >> EXPONENT_SHIFT;
+        let others = self.0.bitcast::<S::u32s>() & !POWER_BITS;
+        Self((others | exponent & POWER_BITS).bitcast())
     }
 
     #[inline(always)]

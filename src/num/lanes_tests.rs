@@ -60,7 +60,7 @@ fn is_same(a: f32, b: f32) -> bool {
 type Binary<N> = fn(N, N) -> N;
 
 /// Operations that must give the same bits in lanes as for scalars.
-fn operations<N: Single>() -> [(&'static str, Binary<N>); 20] {
+fn operations<N: Single>() -> [(&'static str, Binary<N>); 22] {
     fn selected<N: Single>(mask: N::Mask, a: N, b: N) -> N {
         N::select(mask, a, b)
     }
@@ -88,6 +88,8 @@ fn operations<N: Single>() -> [(&'static str, Binary<N>); 20] {
         ("double min", |a, b| in_double(a, b, Real::min)),
         ("double gt", |a, b| selected(a.widen().gt(b.widen()), a, b)),
         ("per lane", |a, b| N::per_lane([a, b], |_, [a, b]| a - b)),
+        ("power", |a, _| a.power_in_last_bits()),
+        ("with power", |a, b| a.with_power_in_last_bits(b.abs())),
     ]
 }
 
@@ -187,6 +189,26 @@ fn the_lanes_of_a_second_vector_are_numbered_on() {
 fn the_second_operand_is_taken_for_nan() {
     for (a, b) in [(f32::NAN, 2.0), (2.0, f32::NAN)] {
         assert!(is_same(Real::max(a, b), b) && is_same(Real::min(a, b), b));
+    }
+}
+
+#[test]
+fn the_last_bits_keep_the_next_power_of_two() {
+    let (first, last) = (1.0 / 65_536.0, 16_384.0);
+    let below = [(0.0, first), (1e-30, first), (first, first)];
+    let within = [
+        (1.6e-5, 2.0 * first),
+        (0.25, 0.25),
+        (0.26, 0.5),
+        (last, last),
+    ];
+    let above = [last + 1.0, f32::MAX, f32::INFINITY].map(|least| (least, f32::INFINITY));
+    for (least, expected) in below.into_iter().chain(within).chain(above) {
+        for number in [0.1_f32, 1.0, 3.7e9, -2.5e-20] {
+            let with_power = number.with_power_in_last_bits(least);
+            assert_eq!(with_power.power_in_last_bits(), expected, "{least}");
+            assert!(with_power.to_bits().abs_diff(number.to_bits()) < 32);
+        }
     }
 }
 

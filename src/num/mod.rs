@@ -15,6 +15,8 @@
 //! Outside of generic code, `max` and `min` of an `f32` or an `f64` are the inherent functions of the
 //! standard library, which return the operand that is not NaN.
 
+#[cfg(feature = "cull")]
+mod double_lanes;
 mod exponential;
 mod float;
 #[cfg(feature = "cull")]

@@ -133,6 +133,13 @@ pub trait Single: Real<Element = f32> {
     /// for either, not for results.
     fn times_plus(self, factor: Self, addend: Self) -> Self;
 
+    /// The power of two 2^(k − 16), where k is what the last five bits hold. Infinite if all of them are set.
+    fn power_in_last_bits(self) -> Self;
+
+    /// This number, with the least [power](Self::power_in_last_bits) in its last bits that is not below `least`, which
+    /// must not be NaN.
+    fn with_power_in_last_bits(self, least: Self) -> Self;
+
     /// 1 − self
     #[inline(always)]
     fn one_minus(self) -> Self {
@@ -151,6 +158,17 @@ pub trait Single: Real<Element = f32> {
         self * round_up(1.0, roundings)
     }
 }
+
+/// The bits that hold a [power](Single::power_in_last_bits), which are the last of its exponent.
+pub(super) const POWER_BITS: u32 = 31;
+/// The others of the exponent, for a power times 2¹¹³.
+pub(super) const POWER_BASE: u32 = 0x7000_0000;
+/// 2¹¹³ and its reciprocal.
+pub(super) const POWER_SCALE: f32 = 1.038_459_4e34;
+pub(super) const POWER_UNIT: f32 = 1.0 / POWER_SCALE;
+/// Where the exponent begins, and all bits before it.
+pub(super) const EXPONENT_SHIFT: u32 = 23;
+pub(super) const FRACTION_BITS: u32 = (1 << EXPONENT_SHIFT) - 1;
 
 /// A [`Real`] in double precision: an `f64`, or one in each lane.
 pub trait Double: Real<Element = f64> {}

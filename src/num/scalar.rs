@@ -1,4 +1,7 @@
-use super::real::{Quad, Real, Single};
+use super::real::{
+    EXPONENT_SHIFT, FRACTION_BITS, POWER_BASE, POWER_BITS, POWER_SCALE, POWER_UNIT, Quad, Real,
+    Single,
+};
 use super::{sqrt, sqrt_f64};
 
 macro_rules! real {
@@ -97,6 +100,19 @@ impl Single for f32 {
     #[inline(always)]
     fn times_plus(self, factor: Self, addend: Self) -> Self {
         self * factor + addend
+    }
+
+    #[inline(always)]
+    fn power_in_last_bits(self) -> Self {
+        let exponent = (self.to_bits() & POWER_BITS) << EXPONENT_SHIFT;
+        Self::from_bits(exponent | POWER_BASE) * POWER_UNIT
+    }
+
+    #[inline(always)]
+    fn with_power_in_last_bits(self, least: Self) -> Self {
+        let scaled = Real::max(least * POWER_SCALE, Self::from_bits(POWER_BASE));
+        let exponent = (scaled.to_bits() + FRACTION_BITS) >> EXPONENT_SHIFT;
+        Self::from_bits(self.to_bits() & !POWER_BITS | exponent & POWER_BITS)
     }
 
     #[inline(always)]

@@ -171,6 +171,19 @@ impl<N: Single> Single for Twice<N> {
     }
 
     #[inline(always)]
+    fn power_in_last_bits(self) -> Self {
+        Self(self.0.power_in_last_bits(), self.1.power_in_last_bits())
+    }
+
+    #[inline(always)]
+    fn with_power_in_last_bits(self, least: Self) -> Self {
+        Self(
+            self.0.with_power_in_last_bits(least.0),
+            self.1.with_power_in_last_bits(least.1),
+        )
+    }
+
+    #[inline(always)]
     fn load(self, lanes: &[f32]) -> Self {
         Self(self.0.load(lanes), self.1.load(&lanes[N::LANES..]))
     }

@@ -128,8 +128,7 @@ fn ltc_lobe(roughness: f32, share: f32, matrix: Option<[f32; 4]>, incidence: Inc
 
 /// The first and the third row of M⁻¹. The second is the cross product of the third and the first.
 pub fn ltc_rows(lobe: &LtcLobe) -> [Vector; 2] {
-    let [_, _, _, _, x, y, z, third_x, third_y, third_z, _, shear, ..] =
-        lobe.numbers().map(f64::from);
+    let [_, _, _, _, x, y, z, third_x, third_y, third_z, shear, ..] = lobe.numbers().map(f64::from);
     let third = Vector([third_x, third_y, third_z]);
     [Vector([x, y, z]) + third * shear, third]
 }
