@@ -13,13 +13,15 @@ use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterio
 use fearless_simd::{Level, dispatch};
 use stochastic_light_culling::{
     Conductor, Dielectric, Direction, Estimate, Fresnel, Ggx, GgxLobe, Incidence, LambertLobe,
-    Lobe, LtcLobe, NoFresnel, PointBlock, RadianceEstimator, Roulette, Schlick, Seed, ShadedPoint,
-    ShadingBatch, Vpl, Xi, glam::Vec3,
+    Lobe, LtcLobe, NoFresnel, PointBlock, PointDecision, RadianceEstimator, Roulette, Schlick,
+    Seed, ShadedPoint, ShadingBatch, Vpl, WeightedList, Xi, glam::Vec3,
 };
 
 const LIGHTS: u32 = 16_384;
 const TILES: u32 = 16;
 const POINTS: usize = 256;
+/// Weights of lists.
+const ONES: [f32; 48] = [1.0; 48];
 const TINT: Vec3 = Vec3::new(1.0, 0.5, 0.25);
 
 type Group<'a> = BenchmarkGroup<'a, criterion::measurement::WallTime>;
@@ -142,12 +144,28 @@ impl<L: Lobe + Copy> Scene<L> {
 
     fn by_points(&self, lanes: usize) -> Vec3 {
         let estimator = RadianceEstimator::new(&self.roulette).with_lanes(lanes);
+        self.by_points_with(&estimator, |tile| &*tile.list)
+    }
+
+    /// Without roulette, and so without a look at which lights are too faint: what takes time is the lobe.
+    fn all_by_points(&self) -> Vec3 {
+        self.by_points_with(&RadianceEstimator::listed(), |tile| {
+            let (lights, weights) = (&*tile.list, &ONES[..tile.list.len()]);
+            WeightedList { lights, weights }
+        })
+    }
+
+    fn by_points_with<'a, D: PointDecision>(
+        &'a self,
+        estimator: &RadianceEstimator<D>,
+        list_of: impl Fn(&'a Tile) -> D::List<'a>,
+    ) -> Vec3 {
         let mut total = Vec3::ZERO;
         for tile in &self.tiles {
             let mut points = tile.points.iter().copied();
             while let Some(block) = PointBlock::take(&mut points) {
                 let mut sums = [[0.0; PointBlock::LEN]; 3];
-                estimator.at_block(&self.batch, &tile.list, &block, |estimates| {
+                estimator.at_block(&self.batch, list_of(tile), &block, |estimates| {
                     for (sums, tint) in sums.iter_mut().zip(TINT.to_array()) {
                         for (i, sum) in sums.iter_mut().enumerate() {
                             let cosine = estimates.direction[0][i].abs();
@@ -206,6 +224,9 @@ fn evaluate<L: Lobe + Copy>(
     });
     group.bench_function(format!("{name}, scalar, facing first"), |bencher| {
         bencher.iter(|| scene.scalar(&facing));
+    });
+    group.bench_function(format!("{name}, all at points"), |bencher| {
+        bencher.iter(|| scene.all_by_points());
     });
     let mut sums = Vec::new();
     for lanes in widths {
