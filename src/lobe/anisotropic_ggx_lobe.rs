@@ -235,6 +235,7 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
             &self.at_any_azimuth.lanes(),
             self.ggx.roughness(),
             self.to_surface_frame(),
+            F::IS_GENTLE,
             #[inline(always)]
             |cosine| self.fresnel().reflectance(cosine),
             &cap.lanes(),
@@ -308,6 +309,7 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
             &lobes,
             roughness,
             to_surface_frame,
+            F::IS_GENTLE,
             #[inline(always)]
             |cosine| {
                 let fresnel_of = |i| lobe_of(i).map(|lobe| *lobe.fresnel());

@@ -48,11 +48,13 @@ pub(super) fn anisotropic_majorant<N: Single, G: MaskingShadowing>(
     at_any_azimuth: &GgxLobes<N>,
     roughness: [N; 2],
     to_surface_frame: Matrix3<N>,
+    is_gentle: bool,
     reflectance: impl Fn(N) -> N,
     cap: &Caps<N>,
 ) -> Majorant<N> {
     let members = GgxMembers::one(at_any_azimuth);
     members.majorant_of_one::<G>(
+        is_gentle,
         reflectance,
         #[inline(always)]
         |half_vectors| {

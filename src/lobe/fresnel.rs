@@ -72,6 +72,10 @@ pub trait Fresnel: Copy + 'static {
     #[doc(hidden)]
     const HAS_VALID_MAJORANT: bool = false;
 
+    /// Whether F falls with cosθ_h and is steep nowhere: a bound then needs it once, at an angle that need not be exact.
+    #[doc(hidden)]
+    const IS_GENTLE: bool = false;
+
     /// Whether `reflectance_in_lanes` is implemented, and `maximum` is not.
     #[doc(hidden)]
     const IS_IN_LANES: bool = false;
@@ -126,13 +130,33 @@ pub(super) fn quasi_convex_maximum<N: Single>(
     reflectance: impl Fn(N) -> N,
     [smallest_cosine, largest_cosine]: [N; 2],
 ) -> N {
-    // Powers of smaller cosines would underflow.
-    let is_tiny = smallest_cosine.splat(1e-15).gt(smallest_cosine);
-    let rounded = smallest_cosine * round_down(1.0, SMALLEST_COSINE_ROUNDINGS);
-    let smallest_cosine = N::select(is_tiny, smallest_cosine.zero(), rounded);
     let steepest = reflectance(largest_cosine);
-    let grazing = reflectance(smallest_cosine);
-    let most = grazing.max(steepest).round_up(REFLECTANCE_ROUNDINGS);
+    let grazing = reflectance(rounded_cosine(smallest_cosine));
+    rounded_reflectance(grazing.max(steepest))
+}
+
+/// An upper bound of an F that falls with the cosine, from this one on.
+#[inline(always)]
+pub(super) fn falling_maximum<N: Single>(
+    reflectance: impl FnOnce(N) -> N,
+    smallest_cosine: N,
+) -> N {
+    rounded_reflectance(reflectance(rounded_cosine(smallest_cosine)))
+}
+
+/// The smallest cosine, rounded down.
+#[inline(always)]
+fn rounded_cosine<N: Single>(cosine: N) -> N {
+    // Powers of smaller cosines would underflow.
+    let is_tiny = cosine.splat(1e-15).gt(cosine);
+    let rounded = cosine * round_down(1.0, SMALLEST_COSINE_ROUNDINGS);
+    N::select(is_tiny, cosine.zero(), rounded)
+}
+
+/// The greatest F, rounded up.
+#[inline(always)]
+fn rounded_reflectance<N: Single>(most: N) -> N {
+    let most = most.round_up(REFLECTANCE_ROUNDINGS);
     most.max(most.splat(LEAST_REFLECTED)).min(most.splat(1.0))
 }
 
@@ -224,6 +248,7 @@ pub struct NoFresnel;
 
 impl Fresnel for NoFresnel {
     const HAS_VALID_MAJORANT: bool = true;
+    const IS_GENTLE: bool = true;
 
     #[inline]
     fn reflectance(&self, _half_angle_cosine: f32) -> f32 {
@@ -285,6 +310,7 @@ impl Schlick {
 
 impl Fresnel for Schlick {
     const HAS_VALID_MAJORANT: bool = true;
+    const IS_GENTLE: bool = true;
     const IS_IN_LANES: bool = true;
 
     #[inline]

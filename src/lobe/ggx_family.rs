@@ -188,7 +188,14 @@ impl<G: MaskingShadowing> LobeFamily for GgxFamily<G> {
         };
         members.majorant::<G>(
             #[inline(always)]
-            |[least_cosine, _]| ranges.fresnel.value(least_cosine),
+            |half_vectors| {
+                let [least_cosine, _] = half_vectors.half_angle_cosines();
+                let typical_cosine = half_vectors.typical_half_angle_cosine();
+                Majorant {
+                    greatest: ranges.fresnel.value(least_cosine),
+                    typical: ranges.fresnel.value(typical_cosine),
+                }
+            },
             #[inline(always)]
             |half_vectors| {
                 let [least, most] = ranges.roughness;

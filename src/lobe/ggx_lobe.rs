@@ -225,6 +225,7 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
     #[inline]
     fn maximum_within(&self, cap: &Cap) -> f32 {
         let majorant = self.lanes().majorant::<G>(
+            F::IS_GENTLE,
             #[inline(always)]
             |cosine| self.fresnel.reflectance(cosine),
             &cap.lanes(),
@@ -297,6 +298,7 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
     ) -> Majorant<N> {
         let (lobes, parameters) = GgxLobes::from_numbers(numbers);
         lobes.majorant::<G>(
+            F::IS_GENTLE,
             #[inline(always)]
             |cosine| {
                 let fresnel_of = |i| lobe_of(i).map(|lobe| lobe.fresnel);

@@ -216,16 +216,18 @@ impl<N: Single> GgxLobes<N> {
         )
     }
 
-    /// The majorant within a cap, where `reflectance` is F as a function of cosθ_h.
+    /// The majorant within a cap, where `reflectance` is F as a function of cosθ_h, gentle or not.
     #[inline(always)]
     pub fn majorant<G: MaskingShadowing>(
         &self,
+        is_gentle: bool,
         reflectance: impl Fn(N) -> N,
         cap: &Caps<N>,
     ) -> Majorant<N> {
         let members = GgxMembers::one(self);
         let alpha_squared = self.roughness * self.roughness;
         members.majorant_of_one::<G>(
+            is_gentle,
             reflectance,
             #[inline(always)]
             |half_vectors| {

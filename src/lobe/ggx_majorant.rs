@@ -40,7 +40,7 @@
 //! It takes the sine, the cosines and the Fresnel factor of the middle, and the NDF that is filtered as for a
 //! Gaussian spread of half vectors: α̂² + ½(c/‖h‖ + c_n)², with the α̂ of the bound, or α_xα_y.
 
-use super::fresnel::quasi_convex_maximum;
+use super::fresnel::{falling_maximum, quasi_convex_maximum};
 use super::ggx::ndf_of_squared_sine;
 use super::half_vectors::HalfVectors;
 use super::{Caps, GgxLobes, Majorant, MaskingShadowing};
@@ -71,12 +71,12 @@ impl<N: Single> GgxMembers<N> {
         }
     }
 
-    /// The majorant within a cap. `fresnel` gives an upper bound of F between two cosines of the half angle, `ndf`
-    /// the majorant of D, and `masking_root` the least root of G1(ω_o) for the greatest μ_o.
+    /// The majorant within a cap. `fresnel` and `ndf` give those of F and D, and `masking_root` the least root of G1(ω_o)
+    /// for the greatest μ_o.
     #[inline(always)]
     pub fn majorant<G: MaskingShadowing>(
         &self,
-        fresnel: impl Fn([N; 2]) -> N,
+        fresnel: impl FnOnce(&HalfVectors<N>) -> Majorant<N>,
         ndf: impl FnOnce(&HalfVectors<N>) -> Majorant<N>,
         masking_root: impl Fn(N) -> N,
         cap: &Caps<N>,
@@ -88,14 +88,14 @@ impl<N: Single> GgxMembers<N> {
             return Majorant::exactly(zero);
         }
         let half_vectors = cap.half_vectors(&self.incoming);
-        let ndf = ndf(&half_vectors);
-        let greatest = fresnel(half_vectors.half_angle_cosines())
+        let (fresnel, ndf) = (fresnel(&half_vectors), ndf(&half_vectors));
+        let greatest = fresnel.greatest
             * ndf.greatest
             * self.masking::<G>(
                 outgoing_cosine.greatest,
                 masking_root(outgoing_cosine.greatest),
             );
-        let typical = fresnel(half_vectors.typical_half_angle_cosines())
+        let typical = fresnel.typical
             * ndf.typical
             * self.masking::<G>(
                 outgoing_cosine.typical,
@@ -109,7 +109,7 @@ impl<N: Single> GgxMembers<N> {
         Majorant { greatest, typical }
     }
 
-    /// The majorant of one lobe within a cap, where `reflectance` is F as a function of cosθ_h; else as
+    /// The majorant of one lobe within a cap, where `reflectance` is F as a function of cosθ_h, gentle or not; else as
     /// [`majorant`](Self::majorant).
     #[expect(
         clippy::redundant_closure,
@@ -118,6 +118,7 @@ impl<N: Single> GgxMembers<N> {
     #[inline(always)]
     pub fn majorant_of_one<G: MaskingShadowing>(
         &self,
+        is_gentle: bool,
         reflectance: impl Fn(N) -> N,
         ndf: impl FnOnce(&HalfVectors<N>) -> Majorant<N>,
         masking_root: impl Fn(N) -> N,
@@ -125,12 +126,24 @@ impl<N: Single> GgxMembers<N> {
     ) -> Majorant<N> {
         self.majorant::<G>(
             #[inline(always)]
-            |cosines| {
-                quasi_convex_maximum(
-                    #[inline(always)]
-                    |cosine| reflectance(cosine),
-                    cosines,
-                )
+            |half_vectors| {
+                let [least_cosine, _] = half_vectors.half_angle_cosines();
+                Majorant {
+                    greatest: if is_gentle {
+                        falling_maximum(
+                            #[inline(always)]
+                            |cosine| reflectance(cosine),
+                            least_cosine,
+                        )
+                    } else {
+                        quasi_convex_maximum(
+                            #[inline(always)]
+                            |cosine| reflectance(cosine),
+                            half_vectors.sharp_half_angle_cosines(),
+                        )
+                    },
+                    typical: reflectance(half_vectors.typical_half_angle_cosine()),
+                }
             },
             ndf,
             masking_root,

@@ -36,8 +36,9 @@
 //! much, and the angle of a sum of chords is at least the sum of their angles.
 //!
 //! By the triangle inequality it is at least ½(‖h‖ − c), the cosine for an angle that is wider by up to a half: too wide
-//! where glass begins to reflect all light, and F is infinitely steep. That serves from [`STEEP_LENGTH`] on, where a
-//! growing chord hardly lessens the cosine of the sum, and rounding could make it greater.
+//! where glass begins to reflect all light, and F is infinitely steep. That takes no roots, and serves where F is nowhere
+//! steep, and from [`STEEP_LENGTH`] on, where a growing chord hardly lessens the cosine of the sum, and rounding could make
+//! it greater.
 //!
 //! # Two scales
 //!
@@ -136,9 +137,16 @@ impl<N: Single> HalfVectors<N> {
         self.middle
     }
 
-    /// The least and the greatest cosine ω_i·ω_h = ½‖ω_i + ω‖ of the half angle.
+    /// The least and the greatest cosine ω_i·ω_h = ½‖ω_i + ω‖ of the half angle, by the triangle inequality.
     #[inline(always)]
     pub fn half_angle_cosines(&self) -> [N; 2] {
+        let [least, greatest] = self.lengths;
+        [least * 0.5, greatest * 0.5]
+    }
+
+    /// As [`half_angle_cosines`](Self::half_angle_cosines), but the least one by a sum of angles.
+    #[inline(always)]
+    pub fn sharp_half_angle_cosines(&self) -> [N; 2] {
         let [least, greatest] = self.lengths;
         let of_sum = self.length * half_angle_cosine(self.chord)
             - self.difference.length() * self.chord * 0.5;
@@ -147,10 +155,10 @@ impl<N: Single> HalfVectors<N> {
         [least * 0.5, greatest * 0.5]
     }
 
-    /// That of the middle, for both.
+    /// The cosine of the half angle in the middle.
     #[inline(always)]
-    pub fn typical_half_angle_cosines(&self) -> [N; 2] {
-        [(self.length * 0.5).min(self.length.splat(1.0)); 2]
+    pub fn typical_half_angle_cosine(&self) -> N {
+        (self.length * 0.5).min(self.length.splat(1.0))
     }
 
     /// The least squared sine of the angle to one of `normals`, at most 1.
