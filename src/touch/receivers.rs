@@ -125,15 +125,12 @@ impl<F: LobeFamily> ReceiverCluster<F> {
         let delta = roulette.delta() * self.delta_scale();
         // NaN if the squared length is.
         let least = flux.splat(least_distance_squared);
-        let over_delta = [distance * distance, way.length_squared()].map(
-            // Finite, so that an infinite bound stays infinite.
-            #[inline(always)]
-            |squared| (Real::max(squared, least) * delta).min(flux.splat(f32::MAX)),
-        );
+        let over_delta = |squared| over_delta(squared, least, delta);
         let roundings = RADIANCE_ROUNDINGS + MERGE_ROUNDINGS * self.merges();
         let sent = flux * of_light.greatest * of_receivers.greatest;
-        let greatest = (sent / over_delta[0]).round_up(roundings);
-        let typical = flux * of_light.typical * of_receivers.typical / over_delta[1];
+        let greatest = (sent / over_delta(distance * distance)).round_up(roundings);
+        let typical =
+            flux * of_light.typical * of_receivers.typical / over_delta(way.length_squared());
         // Not NaN where the distance is zero, too.
         let zero = flux.zero();
         let [greatest, typical] = N::select_all(sent.is_positive(), [greatest, typical], [zero; 2]);
@@ -142,4 +139,10 @@ impl<F: LobeFamily> ReceiverCluster<F> {
             typical: typical.min(greatest),
         }
     }
+}
+
+/// δl² for l² of at least `least`. Finite, so that an infinite bound stays infinite.
+#[inline(always)]
+fn over_delta<N: Single>(squared: N, least: N, delta: f32) -> N {
+    (Real::max(squared, least) * delta).min(squared.splat(f32::MAX))
 }

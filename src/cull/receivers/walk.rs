@@ -11,7 +11,7 @@ use crate::cull::lanes::{LANES, compress, mask_of_first, write_chosen};
 use crate::cull::shading::{Lights, ShadingBatch};
 use crate::light::{Roulette, TileProbability};
 use crate::lobe::{Lobe, LobeFamily, Majorant};
-use crate::num::{Real, Single};
+use crate::num::{Real, Single, Twice};
 use crate::touch::LitFrom;
 use crate::view::ReceiverCluster;
 
@@ -242,32 +242,42 @@ impl<L: Lobe, F: LobeFamily, R: Rule> Scene<'_, L, F, R> {
             nodes,
             room,
         } = lists;
-        for step in lights.chunks(S::f32s::LEN) {
-            let mut indices = [step[0]; LANES];
+        let lanes = S::f32s::LEN;
+        for step in lights.chunks(2 * lanes) {
+            let mut indices = [step[0]; 2 * LANES];
             indices[..step.len()].copy_from_slice(step);
-            let filled = mask_of_first::<S>(simd, step.len());
-            let gathered = Lights::gathered(simd, self.lights, &indices);
+            let filled = Twice(
+                mask_of_first::<S>(simd, step.len()),
+                mask_of_first::<S>(simd, step.len().saturating_sub(lanes)),
+            );
+            let gathered = Lights::gathered_twice(simd, self.lights, &indices);
             let light = lit_from(
                 &gathered,
                 #[inline(always)]
                 |lane| self.lights.lobes.get(indices[lane] as usize),
             );
-            let vector = S::u32s::from_slice(simd, &indices[..S::u32s::LEN]);
+            let (first_half, second_half) = indices.split_at(lanes);
+            let first_half = S::u32s::from_slice(simd, &first_half[..lanes]);
+            let second_half = S::u32s::from_slice(simd, &second_half[..lanes]);
             for (piece, node) in nodes.iter().enumerate() {
                 let radiance = if BY_PARTS {
                     self.radiance(self.tiles.undivided(*node), &light)
                 } else {
                     self.radiance(self.tiles.cluster(*node).into_iter(), &light)
                 };
-                let first = piece * *room + lens[piece];
                 let probability = rule.probability(&radiance);
                 let chosen = filled & probability.is_positive() & gathered.xi.le(probability);
-                if Q::WEIGHS {
-                    let weight = probability.splat(1.0) / probability;
-                    compress::<S>(weight, chosen)
-                        .store_slice(&mut weights[first..][..S::f32s::LEN]);
+                let weight = probability.splat(1.0) / probability;
+                for (half, weight, chosen) in [
+                    (first_half, weight.0, chosen.0),
+                    (second_half, weight.1, chosen.1),
+                ] {
+                    let first = piece * *room + lens[piece];
+                    if Q::WEIGHS {
+                        compress::<S>(weight, chosen).store_slice(&mut weights[first..][..lanes]);
+                    }
+                    lens[piece] += write_chosen::<S>(half, chosen, &mut out[first..]);
                 }
-                lens[piece] += write_chosen::<S>(vector, chosen, &mut out[first..]);
             }
         }
     }

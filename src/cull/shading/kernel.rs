@@ -1,13 +1,13 @@
 //! The evaluation of one light at one point, in each lane.
 
-use fearless_simd::{Simd, SimdMask};
+use fearless_simd::{Simd, SimdBase, SimdMask};
 
 use super::batch::{LINE, LOBE, ShadingBatch, XI};
 use super::receiver::ReceiverLanes;
 use crate::cull::records::load_lines;
 use crate::light::unit;
 use crate::lobe::{FIRST_NUMBERS, Lobe, LobeNumbers};
-use crate::num::{F32Lanes, Real, Single, Vector3};
+use crate::num::{F32Lanes, Real, Single, Twice, Vector3};
 
 /// What all evaluations of an estimator share.
 #[derive(Clone, Copy, Debug)]
@@ -66,6 +66,37 @@ impl<S: Simd> Lights<F32Lanes<S>> {
             );
         }
         Self::from_lines(simd, vectors)
+    }
+}
+
+impl<S: Simd> Lights<Twice<F32Lanes<S>>> {
+    /// The lights with the first of `indices`, one in each lane of two vectors.
+    #[inline(always)]
+    pub fn gathered_twice<L: ShadedLight>(
+        simd: S,
+        batch: &ShadingBatch<L>,
+        indices: &[u32],
+    ) -> Self {
+        let (first, second) = indices.split_at(S::f32s::LEN);
+        let first = Lights::gathered(simd, batch, first);
+        let second = Lights::gathered(simd, batch, second);
+        let zero = F32Lanes::new(simd, 0.0);
+        let mut numbers = [Twice(zero, zero); FIRST_NUMBERS + LINE];
+        let used = FIRST_NUMBERS + LINE * (ShadingBatch::<L>::lines_per_light() - 1);
+        let of_each = first.numbers.iter().zip(&second.numbers);
+        for (both, (first, second)) in numbers[..used].iter_mut().zip(of_each) {
+            *both = Twice(*first, *second);
+        }
+        Self {
+            position: Vector3::new(
+                Twice(first.position.x, second.position.x),
+                Twice(first.position.y, second.position.y),
+                Twice(first.position.z, second.position.z),
+            ),
+            flux: Twice(first.flux, second.flux),
+            xi: Twice(first.xi, second.xi),
+            numbers,
+        }
     }
 }
 

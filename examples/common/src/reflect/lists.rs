@@ -3,8 +3,9 @@
 use rayon::prelude::*;
 use stochastic_light_culling::{
     BatchBuilder, Blind, Culler, Error, GgxLobe, LightBatch, LightLists, LobeFamily,
-    ProjectedEllipsoid, RadianceEstimator, ReceiverCluster, ReceiverCuller, Roulette, Schlick,
-    ShadingBatch, Tight, TileProbability, TileReceivers, WeightedLists, glam::Vec3,
+    PixelRectangle, ProjectedEllipsoid, RadianceEstimator, ReceiverCluster, ReceiverCuller,
+    Roulette, Schlick, ShadingBatch, Tight, TileProbability, TileReceivers, WeightedLists,
+    glam::Vec3,
 };
 
 use super::shade::{Lights, shade};
@@ -263,32 +264,43 @@ fn fill<R: Receiving, P: Palette, F: LobeFamily>(
     let mut counts = vec![0; layout.slots()];
     let (frame, parts) = (scenery.frame, tiles.parts_grid());
     let parts_in_tile = subregion.grid.tile_size() / parts.tile_size();
-    let [width, height] = subregion.grid.image_size();
-    // Once, since the pixels of a subregion are far apart in the image.
-    let receivers = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
-    let receivers: Vec<Option<(u32, Vec3, F)>> = receivers
-        .map(|local| {
-            let pixel = frame.interleave.join_pixel(index, local);
-            let tile = subregion.grid.tile_of(local);
-            let depth = frame.surfaces.at(pixel).depth;
-            let interval = subregion.depths.interval_of(tile, depth)?;
-            let receiver = scenery.receivers[frame.surfaces.index(pixel)].as_ref()?;
-            counts[layout.slot(tile, interval)] += 1;
-            Some((interval, receiver.position, family(&receiver.lobe)))
-        })
-        .collect();
+    let width = parts.image_size()[0];
+    let receiver = |local| {
+        let pixel = frame.interleave.join_pixel(index, local);
+        let depth = frame.surfaces.at(pixel).depth;
+        let interval = subregion
+            .depths
+            .interval_of(subregion.grid.tile_of(local), depth)?;
+        let receiver = scenery.receivers[frame.surfaces.index(pixel)].as_ref()?;
+        Some((interval, receiver.position, family(&receiver.lobe)))
+    };
+    // Those of a row of parts, since the pixels of a subregion are far apart in the image.
+    let (mut receivers, mut place) = (Vec::new(), None);
     tiles.fill(|part, interval| {
-        let tile = part.map(|n| n / parts_in_tile);
+        let row = PixelRectangle {
+            max: [width, parts.pixels(part).max[1]],
+            ..parts.pixels([0, part[1]])
+        };
+        if place.replace(part[1]) != Some(part[1]) {
+            receivers.clear();
+            row.pixels().for_each(
+                #[inline(always)]
+                |local| receivers.push(receiver(local)),
+            );
+        }
         let pixels = parts.pixels(part).pixels();
-        let cluster = ReceiverCluster::of(pixels.filter_map(|[x, y]| {
-            let (own, position, family) = receivers[(y * width + x) as usize]?;
-            (own == interval).then_some((position, family))
-        }))?;
+        let cluster = ReceiverCluster::of(pixels.filter_map(
+            #[inline(always)]
+            |[x, y]| {
+                let (own, position, family) =
+                    receivers[((y - row.min[1]) * width + x) as usize].as_ref()?;
+                (*own == interval).then_some((*position, *family))
+            },
+        ))?;
+        let slot = layout.slot(part.map(|n| n / parts_in_tile), interval);
+        counts[slot] += cluster.len();
         match scales {
-            Some(scales) => {
-                let scale = scales[layout.slot(tile, interval)];
-                cluster.with_delta_scale(scale).ok()
-            }
+            Some(scales) => cluster.with_delta_scale(scales[slot]).ok(),
             None => Some(cluster),
         }
     });
