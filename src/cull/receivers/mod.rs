@@ -2,7 +2,7 @@
 //!
 //! [`TileReceivers`] holds a cluster of receivers for each depth interval of each tile, and one for each block of
 //! tiles, of blocks, and so on up to the whole image (`tiles`). [`ReceiverCuller`] walks down from there: the
-//! lights that may light a block are tested against each of its parts, as many side by side as a vector has lanes
+//! lights that may light a block are tested against each of its parts, as many side by side as two vectors have lanes
 //! (`walk`). The lists of the last parts are what it returns, with a weight for each light if lights are drawn for a
 //! tile as a whole (`culler`, `lists`).
 //!
