@@ -125,12 +125,11 @@ impl<F: LobeFamily> ReceiverCluster<F> {
         let delta = roulette.delta() * self.delta_scale();
         // NaN if the squared length is.
         let least = flux.splat(least_distance_squared);
-        let over_delta = |squared| over_delta(squared, least, delta);
         let roundings = RADIANCE_ROUNDINGS + MERGE_ROUNDINGS * self.merges();
         let sent = flux * of_light.greatest * of_receivers.greatest;
-        let greatest = (sent / over_delta(distance * distance)).round_up(roundings);
-        let typical =
-            flux * of_light.typical * of_receivers.typical / over_delta(way.length_squared());
+        let greatest = (sent / over_delta(distance * distance, least, delta)).round_up(roundings);
+        let typical = flux * of_light.typical * of_receivers.typical
+            / over_delta(way.length_squared(), least, delta);
         // Not NaN where the distance is zero, too.
         let zero = flux.zero();
         let [greatest, typical] = N::select_all(sent.is_positive(), [greatest, typical], [zero; 2]);

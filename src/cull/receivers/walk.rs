@@ -243,7 +243,7 @@ impl<L: Lobe, F: LobeFamily, R: Rule> Scene<'_, L, F, R> {
             room,
         } = lists;
         let lanes = S::f32s::LEN;
-        // A test is a long chain of roots and quotients: two vectors side by side, of which one waits at a time.
+        // A test is a long chain of roots and quotients. The processor works on one vector while the other waits.
         for step in lights.chunks(2 * lanes) {
             let mut indices = [step[0]; 2 * LANES];
             indices[..step.len()].copy_from_slice(step);

@@ -274,14 +274,14 @@ fn fill<R: Receiving, P: Palette, F: LobeFamily>(
         let receiver = scenery.receivers[frame.surfaces.index(pixel)].as_ref()?;
         Some((interval, receiver.position, family(&receiver.lobe)))
     };
-    // Those of a row of parts, since the pixels of a subregion are far apart in the image.
-    let (mut receivers, mut place) = (Vec::new(), None);
+    // Those of one row of parts at a time, since the pixels of a subregion are far apart in the image.
+    let (mut receivers, mut collected) = (Vec::new(), None);
     tiles.fill(|part, interval| {
         let row = PixelRectangle {
             max: [width, parts.pixels(part).max[1]],
             ..parts.pixels([0, part[1]])
         };
-        if place.replace(part[1]) != Some(part[1]) {
+        if collected.replace(part[1]) != Some(part[1]) {
             receivers.clear();
             row.pixels().for_each(
                 #[inline(always)]
