@@ -1,8 +1,10 @@
 use glam::Vec3;
 
 use super::anisotropic_ggx::anisotropic_masking_root;
-use super::anisotropic_lobes::{anisotropic_majorant, anisotropic_value, surface_from_numbers};
-use super::ggx_lobes::{GgxLobes, reflectance};
+use super::anisotropic_lobes::{anisotropic_majorant, anisotropic_value};
+use super::facets::Facets;
+use super::fresnel_of_one::{fresnel_in_lanes, fresnel_of_one, reflectance};
+use super::ggx_lobes::GgxLobes;
 use super::{
     AnisotropicGgx, Cap, Caps, FIRST_NUMBERS, Fresnel, GgxLobe, HeightCorrelated, Incidence, Lobe,
     LobeNumbers, Majorant, MaskingShadowing, NoFresnel, Separable,
@@ -169,11 +171,15 @@ impl<F: Fresnel, G> AnisotropicGgxLobe<F, G> {
 }
 
 impl<F: Fresnel, G> AnisotropicGgxLobe<F, G> {
-    /// The rotation from world space to (tangent, bitangent, n).
+    /// Its microsurface.
     #[inline(always)]
-    pub(super) fn to_surface_frame(&self) -> Matrix3<f32> {
+    pub(super) fn facets(&self) -> Facets<f32> {
         let [along, across] = self.tangent_axes;
-        Matrix3::new(along.into(), across.into(), self.normal().into()).transpose()
+        let world = Matrix3::new(along.into(), across.into(), self.normal().into());
+        Facets {
+            roughness: self.ggx.roughness(),
+            to_surface_frame: world.transpose(),
+        }
     }
 }
 
@@ -220,8 +226,7 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
     fn value(&self, outgoing: Vec3) -> f32 {
         anisotropic_value::<f32, G>(
             &self.at_any_azimuth.lanes(),
-            self.ggx.roughness(),
-            self.to_surface_frame(),
+            &self.facets(),
             #[inline(always)]
             |cosine| self.fresnel().reflectance(cosine),
             outgoing.into(),
@@ -233,11 +238,8 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
     fn maximum_within(&self, cap: &Cap) -> f32 {
         let majorant = anisotropic_majorant::<f32, G>(
             &self.at_any_azimuth.lanes(),
-            self.ggx.roughness(),
-            self.to_surface_frame(),
-            F::IS_GENTLE,
-            #[inline(always)]
-            |cosine| self.fresnel().reflectance(cosine),
+            &self.facets(),
+            &fresnel_of_one(self.fresnel()),
             &cap.lanes(),
         );
         majorant.greatest
@@ -283,11 +285,9 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
         outgoing: Vector3<N>,
     ) -> N {
         let (lobes, parameters) = GgxLobes::from_numbers(numbers);
-        let (roughness, to_surface_frame) = surface_from_numbers(numbers);
         anisotropic_value::<N, G>(
             &lobes,
-            roughness,
-            to_surface_frame,
+            &Facets::from_numbers(numbers),
             #[inline(always)]
             |cosine| {
                 let fresnel_of = |i| lobe_of(i).map(|lobe| *lobe.fresnel());
@@ -304,18 +304,11 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for AnisotropicGgxLobe<F, G> {
         cap: &Caps<N>,
     ) -> Majorant<N> {
         let (lobes, parameters) = GgxLobes::from_numbers(numbers);
-        let (roughness, to_surface_frame) = surface_from_numbers(numbers);
-        anisotropic_majorant::<N, G>(
-            &lobes,
-            roughness,
-            to_surface_frame,
-            F::IS_GENTLE,
+        let fresnel = fresnel_in_lanes(
+            parameters,
             #[inline(always)]
-            |cosine| {
-                let fresnel_of = |i| lobe_of(i).map(|lobe| *lobe.fresnel());
-                reflectance(parameters, fresnel_of, cosine)
-            },
-            cap,
-        )
+            |i| lobe_of(i).map(|lobe| *lobe.fresnel()),
+        );
+        anisotropic_majorant::<N, G>(&lobes, &Facets::from_numbers(numbers), &fresnel, cap)
     }
 }

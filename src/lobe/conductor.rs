@@ -29,7 +29,7 @@
 //! is total. For η = 1 F is 0 for every x > 0. At x = 1 K is −½η²(η² − 4η + 1). For 2 − √3 ≤ η ≤ 2 + √3 that is
 //! not negative, so K is positive for all smaller x, and F rises with θ at all angles.
 
-use super::dielectric::index_squared_less_sine_squared;
+use super::dielectric::{critical_cosine, index_squared_less_sine_squared};
 use super::{Fresnel, FresnelMajorant};
 use crate::base::{Error, number_in};
 use crate::num::Single;
@@ -92,6 +92,10 @@ impl Fresnel for Conductor {
         reflectance(self.index, self.extinction, half_angle_cosine)
     }
 
+    fn critical_cosine(&self) -> f32 {
+        critical_cosine(self.index, self.extinction)
+    }
+
     #[inline]
     fn majorant(&self) -> FresnelMajorant {
         self.majorant
@@ -113,6 +117,11 @@ impl Fresnel for Conductor {
     #[inline]
     fn parameters(&self) -> [f32; 2] {
         [self.index, self.extinction]
+    }
+
+    #[inline(always)]
+    fn critical_cosine_of_parameters<N: Single>([index, extinction]: [N; 2]) -> Option<N> {
+        Some(critical_cosine(index, extinction))
     }
 
     #[inline(always)]

@@ -56,6 +56,10 @@ impl Fresnel for Dielectric {
         reflectance(self.relative_index, half_angle_cosine)
     }
 
+    fn critical_cosine(&self) -> f32 {
+        critical_cosine(self.relative_index, 0.0)
+    }
+
     #[inline]
     fn majorant(&self) -> FresnelMajorant {
         self.majorant
@@ -76,9 +80,22 @@ impl Fresnel for Dielectric {
     }
 
     #[inline(always)]
+    fn critical_cosine_of_parameters<N: Single>([index, _]: [N; 2]) -> Option<N> {
+        Some(critical_cosine(index, index.zero()))
+    }
+
+    #[inline(always)]
     fn reflectance_of_parameters<N: Single>([index, _]: [N; 2], cosine: N) -> Option<N> {
         Some(reflectance(index, cosine))
     }
+}
+
+/// The cosine where w² is zero, but for its imaginary part: √(1 − η² + κ²). Zero if there is none.
+#[inline(always)]
+pub(super) fn critical_cosine<N: Single>(eta: N, kappa: N) -> N {
+    let squared = eta.one_minus() * (eta + 1.0) + kappa * kappa;
+    let (zero, one) = (eta.zero(), eta.splat(1.0));
+    N::select(one.gt(squared), squared.max(zero).sqrt(), zero)
 }
 
 #[inline(always)]

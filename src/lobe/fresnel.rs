@@ -68,6 +68,15 @@ pub trait Fresnel: Copy + 'static {
         }
     }
 
+    /// The cosine in \[0, 1\] of the half angle from which on all light is reflected, or next to which F is steep for
+    /// another reason. Zero, the default, if there is none.
+    ///
+    /// Any value is safe. [`Lobe::maximum_within`](crate::Lobe::maximum_within) is sharper for the right one, within narrow
+    /// caps of directions.
+    fn critical_cosine(&self) -> f32 {
+        0.0
+    }
+
     /// Whether `majorant` is known to be one, whatever the numbers of this factor.
     #[doc(hidden)]
     const HAS_VALID_MAJORANT: bool = false;
@@ -103,6 +112,14 @@ pub trait Fresnel: Copy + 'static {
     #[inline(always)]
     fn reflectance_of_parameters<N: Single>(_: [N; 2], _half_angle_cosine: N) -> Option<N> {
         None
+    }
+
+    /// Computes the [`critical_cosine`](Self::critical_cosine) of one factor in each lane from its
+    /// [`parameters`](Self::parameters). `None` if it cannot be computed in lanes. A gentle factor needs none.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn critical_cosine_of_parameters<N: Single>([any, _]: [N; 2]) -> Option<N> {
+        Self::IS_GENTLE.then(|| any.zero())
     }
 
     /// Computes the [`maximum`](Self::maximum) of one factor in each lane.

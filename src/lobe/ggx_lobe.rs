@@ -2,8 +2,9 @@ use core::marker::PhantomData;
 
 use glam::{Mat3, Vec3};
 
+use super::fresnel_of_one::{fresnel_in_lanes, fresnel_of_one, reflectance};
 use super::ggx::masking_root;
-use super::ggx_lobes::{GgxLobes, reflectance};
+use super::ggx_lobes::GgxLobes;
 use super::{
     Cap, Caps, Fresnel, Ggx, HeightCorrelated, Incidence, Lobe, LobeNumbers, Majorant,
     MaskingShadowing, NoFresnel, Separable, padded,
@@ -224,12 +225,8 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
     /// Needs of F that it is quasi-convex, and of G2 what [`MaskingShadowing`] says.
     #[inline]
     fn maximum_within(&self, cap: &Cap) -> f32 {
-        let majorant = self.lanes().majorant::<G>(
-            F::IS_GENTLE,
-            #[inline(always)]
-            |cosine| self.fresnel.reflectance(cosine),
-            &cap.lanes(),
-        );
+        let fresnel = fresnel_of_one(&self.fresnel);
+        let majorant = self.lanes().majorant::<G>(&fresnel, &cap.lanes());
         majorant.greatest
     }
 
@@ -297,15 +294,12 @@ impl<F: Fresnel, G: MaskingShadowing> Lobe for GgxLobe<F, G> {
         cap: &Caps<N>,
     ) -> Majorant<N> {
         let (lobes, parameters) = GgxLobes::from_numbers(numbers);
-        lobes.majorant::<G>(
-            F::IS_GENTLE,
+        let fresnel = fresnel_in_lanes(
+            parameters,
             #[inline(always)]
-            |cosine| {
-                let fresnel_of = |i| lobe_of(i).map(|lobe| lobe.fresnel);
-                reflectance(parameters, fresnel_of, cosine)
-            },
-            cap,
-        )
+            |i| lobe_of(i).map(|lobe| lobe.fresnel),
+        );
+        lobes.majorant::<G>(&fresnel, cap)
     }
 
     #[inline(always)]

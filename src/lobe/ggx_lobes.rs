@@ -1,6 +1,8 @@
 //! The formulas of [`GgxLobe`](super::GgxLobe), for one lobe in each lane.
 
+use super::facets::Facets;
 use super::fresnel::LEAST_REFLECTED;
+use super::fresnel_of_one::FresnelOfOne;
 use super::ggx::{masking_root, ndf_at};
 use super::ggx_majorant::GgxMembers;
 use super::{Caps, Fresnel, LobeNumbers, Majorant, MaskingShadowing};
@@ -11,26 +13,6 @@ use crate::num::{Quad, Real, Single, UNIT_ROUNDOFF, Vector3};
 const END_COSINE_ROUNDINGS: f32 = 16.0;
 /// Pays for the rounding of F·G2/G1(μ).
 const MAX_REFLECTED_ROUNDINGS: u16 = 96;
-
-/// The reflectance of the Fresnel factor in each lane: computed in lanes if that is possible, and else by the
-/// factor that `fresnel_of` gives for a lane.
-#[inline(always)]
-pub(super) fn reflectance<N: Single, F: Fresnel>(
-    parameters: [N; 2],
-    fresnel_of: impl Fn(usize) -> Option<F>,
-    cosine: N,
-) -> N {
-    F::reflectance_of_parameters(parameters, cosine).unwrap_or_else(
-        #[inline(always)]
-        || {
-            N::per_lane(
-                [cosine],
-                #[inline(always)]
-                |i, [cosine]| fresnel_of(i).map_or(0.0, |fresnel| fresnel.reflectance(cosine)),
-            )
-        },
-    )
-}
 
 /// A [`GgxLobe`] in each lane, without its Fresnel factor and its masking function.
 #[derive(Clone, Copy)]
@@ -216,19 +198,19 @@ impl<N: Single> GgxLobes<N> {
         )
     }
 
-    /// The majorant within a cap, where `reflectance` is F as a function of cosθ_h, gentle or not.
+    /// The majorant within a cap.
     #[inline(always)]
-    pub fn majorant<G: MaskingShadowing>(
+    pub(super) fn majorant<G: MaskingShadowing>(
         &self,
-        is_gentle: bool,
-        reflectance: impl Fn(N) -> N,
+        fresnel: &FresnelOfOne<N, impl Fn(N) -> N>,
         cap: &Caps<N>,
     ) -> Majorant<N> {
         let members = GgxMembers::one(self);
         let alpha_squared = self.roughness * self.roughness;
         members.majorant_of_one::<G>(
-            is_gentle,
-            reflectance,
+            fresnel,
+            #[inline(always)]
+            || Facets::isotropic(self.roughness, self.normal),
             #[inline(always)]
             |half_vectors| {
                 let sine = half_vectors.least_squared_sine(self.normal);

@@ -25,7 +25,8 @@
 //! roots, and grows with μ_o ([`MaskingShadowing`]), and since the root √(μ² + α²(1 − μ²)) grows with α. On an
 //! anisotropic surface the root is at least that for the lesser of α_x and α_y, which is at least α₀/κ for a family.
 //!
-//! The product of the three bounds is the majorant. As the chords close it becomes the lobe itself.
+//! The product of the three bounds is the majorant. As the chords close it becomes the lobe itself. Where F is infinitely
+//! steep, F·D of one lobe has a bound of its own that is sharper, unless the majorant must nest (`half_angle_slices`).
 //!
 //! # It nests
 //!
@@ -40,7 +41,8 @@
 //! It takes the sine, the cosines and the Fresnel factor of the middle, and the NDF that is filtered as for a
 //! Gaussian spread of half vectors: α̂² + ½(c/‖h‖ + c_n)², with the α̂ of the bound, or α_xα_y.
 
-use super::fresnel::{falling_maximum, quasi_convex_maximum};
+use super::facets::Facets;
+use super::fresnel_of_one::FresnelOfOne;
 use super::ggx::ndf_of_squared_sine;
 use super::half_vectors::HalfVectors;
 use super::{Caps, GgxLobes, Majorant, MaskingShadowing};
@@ -71,13 +73,12 @@ impl<N: Single> GgxMembers<N> {
         }
     }
 
-    /// The majorant within a cap. `fresnel` and `ndf` give those of F and D, and `masking_root` the least root of G1(ω_o)
-    /// for the greatest μ_o.
+    /// The majorant within a cap. `reflected` gives that of F·D, and `masking_root` the least root of G1(ω_o) for the
+    /// greatest μ_o.
     #[inline(always)]
     pub fn majorant<G: MaskingShadowing>(
         &self,
-        fresnel: impl FnOnce(&HalfVectors<N>) -> Majorant<N>,
-        ndf: impl FnOnce(&HalfVectors<N>) -> Majorant<N>,
+        reflected: impl FnOnce(&HalfVectors<N>) -> Majorant<N>,
         masking_root: impl Fn(N) -> N,
         cap: &Caps<N>,
     ) -> Majorant<N> {
@@ -88,15 +89,13 @@ impl<N: Single> GgxMembers<N> {
             return Majorant::exactly(zero);
         }
         let half_vectors = cap.half_vectors(&self.incoming);
-        let (fresnel, ndf) = (fresnel(&half_vectors), ndf(&half_vectors));
-        let greatest = fresnel.greatest
-            * ndf.greatest
+        let reflected = reflected(&half_vectors);
+        let greatest = reflected.greatest
             * self.masking::<G>(
                 outgoing_cosine.greatest,
                 masking_root(outgoing_cosine.greatest),
             );
-        let typical = fresnel.typical
-            * ndf.typical
+        let typical = reflected.typical
             * self.masking::<G>(
                 outgoing_cosine.typical,
                 masking_root(outgoing_cosine.typical),
@@ -109,17 +108,12 @@ impl<N: Single> GgxMembers<N> {
         Majorant { greatest, typical }
     }
 
-    /// The majorant of one lobe within a cap, where `reflectance` is F as a function of cosθ_h, gentle or not; else as
-    /// [`majorant`](Self::majorant).
-    #[expect(
-        clippy::redundant_closure,
-        reason = "a reference to a closure is called, not inlined"
-    )]
+    /// The majorant of one lobe within a cap. `ndf` gives that of D, and `facets` what F·D is bounded by where F is steep.
     #[inline(always)]
     pub fn majorant_of_one<G: MaskingShadowing>(
         &self,
-        is_gentle: bool,
-        reflectance: impl Fn(N) -> N,
+        fresnel: &FresnelOfOne<N, impl Fn(N) -> N>,
+        facets: impl FnOnce() -> Facets<N>,
         ndf: impl FnOnce(&HalfVectors<N>) -> Majorant<N>,
         masking_root: impl Fn(N) -> N,
         cap: &Caps<N>,
@@ -127,25 +121,21 @@ impl<N: Single> GgxMembers<N> {
         self.majorant::<G>(
             #[inline(always)]
             |half_vectors| {
-                let [least_cosine, _] = half_vectors.half_angle_cosines();
+                let ndf = ndf(half_vectors);
+                let greatest = if fresnel.is_gentle {
+                    let [least_cosine, _] = half_vectors.half_angle_cosines();
+                    fresnel.falling_maximum(least_cosine) * ndf.greatest
+                } else if cap.must_nest {
+                    fresnel.maximum(half_vectors.sharp_half_angle_cosines()) * ndf.greatest
+                } else {
+                    half_vectors.greatest_reflected(fresnel, facets, ndf.greatest)
+                };
+                let typical_cosine = half_vectors.typical_half_angle_cosine();
                 Majorant {
-                    greatest: if is_gentle {
-                        falling_maximum(
-                            #[inline(always)]
-                            |cosine| reflectance(cosine),
-                            least_cosine,
-                        )
-                    } else {
-                        quasi_convex_maximum(
-                            #[inline(always)]
-                            |cosine| reflectance(cosine),
-                            half_vectors.sharp_half_angle_cosines(),
-                        )
-                    },
-                    typical: reflectance(half_vectors.typical_half_angle_cosine()),
+                    greatest,
+                    typical: fresnel.at(typical_cosine) * ndf.typical,
                 }
             },
-            ndf,
             masking_root,
             cap,
         )

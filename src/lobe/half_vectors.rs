@@ -73,11 +73,11 @@ use super::caps::half_angle_cosine;
 use crate::num::{Matrix3, Real, Single, UNIT_ROUNDOFF, Vector3, round_down};
 
 /// Budget for the sine of a half vector's angle.
-const SINE_ROUNDINGS: u16 = 16;
+pub(super) const SINE_ROUNDINGS: u16 = 16;
 /// Budget for its square.
 const SQUARED_SINE_ROUNDINGS: u16 = 2 * SINE_ROUNDINGS;
 /// Budget for the length of a half vector in the sine, in units of u.
-const LENGTH_ROUNDINGS: f32 = 20.0;
+pub(super) const LENGTH_ROUNDINGS: f32 = 20.0;
 /// Budget for a bound of d·x, in units of u times ‖d‖/‖h‖.
 const LINEAR_ROUNDINGS: f32 = 128.0;
 /// The least share of its leading term that the first λ has. Where the ellipse nears the origin, a λ of zero would take
@@ -100,16 +100,16 @@ const FIRST_MULTIPLIER: f32 = 0.5;
 /// The half vectors of two caps, in each lane.
 #[derive(Clone, Copy)]
 pub struct HalfVectors<N> {
-    /// h
-    middle: Vector3<N>,
+    /// h, around which they lie
+    pub(super) middle: Vector3<N>,
     /// k
-    difference: Vector3<N>,
+    pub(super) difference: Vector3<N>,
     /// ‖h‖
-    length: N,
-    inverse_length: N,
+    pub(super) length: N,
+    pub(super) inverse_length: N,
     /// The least and the greatest length. The latter is positive.
     lengths: [N; 2],
-    chord: N,
+    pub(super) chord: N,
 }
 
 impl<N: Single> HalfVectors<N> {
@@ -129,12 +129,6 @@ impl<N: Single> HalfVectors<N> {
             ],
             chord,
         }
-    }
-
-    /// h, around which they lie.
-    #[inline(always)]
-    pub fn middle(&self) -> Vector3<N> {
-        self.middle
     }
 
     /// The least and the greatest cosine ω_i·ω_h = ½‖ω_i + ω‖ of the half angle, by the triangle inequality.

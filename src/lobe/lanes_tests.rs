@@ -6,6 +6,7 @@ use fearless_simd::{Simd, SimdBase};
 use glam::Vec3;
 
 use super::anisotropic_lobes::anisotropic_value;
+use super::facets::Facets;
 use super::lambert::lambert;
 use super::phong::PhongLobes;
 use super::spherical_gaussian::SphericalGaussians;
@@ -69,6 +70,11 @@ impl Fresnel for Squared {
     fn reflectance(&self, half_angle_cosine: f32) -> f32 {
         let rest = 1.0 - half_angle_cosine;
         self.0 + (1.0 - self.0) * rest * rest
+    }
+
+    // Where F is not steep, and for most factors not a cosine.
+    fn critical_cosine(&self) -> f32 {
+        [f32::NAN, -1.0, 0.5, 1.5, f32::INFINITY][(self.0 * 5.0) as usize]
     }
 }
 
@@ -193,15 +199,19 @@ impl<F: Fresnel> InLanes<AnisotropicGgxLobe<F>> for OfAnisotropicGgx {
     ) -> F32Lanes<S> {
         let fresnels: [F; MAX_LANES] = lobes.map(|lobe| *lobe.fresnel());
         let axis = |axis: fn(Matrix3<f32>) -> Vector3<f32>| {
-            gathered_vector(simd, start, |i| axis(lobes[i].to_surface_frame()).into())
+            gathered_vector(simd, start, |i| {
+                axis(lobes[i].facets().to_surface_frame).into()
+            })
         };
         anisotropic_value::<_, HeightCorrelated>(
             &ggx_lobes(simd, |i| *lobes[i].at_any_azimuth(), start),
-            [
-                gathered(simd, start, |i| lobes[i].ggx().roughness()[0]),
-                gathered(simd, start, |i| lobes[i].ggx().roughness()[1]),
-            ],
-            Matrix3::new(axis(|m| m.x), axis(|m| m.y), axis(|m| m.z)),
+            &Facets {
+                roughness: [
+                    gathered(simd, start, |i| lobes[i].ggx().roughness()[0]),
+                    gathered(simd, start, |i| lobes[i].ggx().roughness()[1]),
+                ],
+                to_surface_frame: Matrix3::new(axis(|m| m.x), axis(|m| m.y), axis(|m| m.z)),
+            },
             |cosine| F::reflectance_in_lanes(&fresnels[start..], cosine),
             outgoing,
         )

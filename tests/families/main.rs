@@ -7,6 +7,7 @@ mod alone;
 mod closing;
 mod members;
 mod nesting;
+mod total_reflection;
 
 use fastrand::Rng;
 use members::{Member, surfaces};

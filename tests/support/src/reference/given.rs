@@ -45,6 +45,15 @@ impl crate_under_test::Fresnel for GivenFresnel {
         }
     }
 
+    fn critical_cosine(&self) -> f32 {
+        match self {
+            Self::None => NoFresnel.critical_cosine(),
+            Self::Schlick(fresnel) => fresnel.critical_cosine(),
+            Self::Dielectric(fresnel) => fresnel.critical_cosine(),
+            Self::Conductor(fresnel) => fresnel.critical_cosine(),
+        }
+    }
+
     fn majorant(&self) -> FresnelMajorant {
         match self {
             Self::None => NoFresnel.majorant(),
