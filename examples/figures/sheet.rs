@@ -1,17 +1,17 @@
 //! A sheet of SVG: pictures, and over them what `plotters` draws.
 
-use std::io::Cursor;
+use std::collections::BTreeSet;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::codecs::jpeg::JpegEncoder;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder, RgbImage};
+use image::{Rgb, RgbImage};
 use plotters::backend::SVGBackend;
 use plotters::coord::Shift;
 use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea};
 use plotters::element::Text;
 use plotters::style::{IntoFont, RGBColor, TextStyle, WHITE};
+use png::{BitDepth, ColorType, Compression, Encoder, EncodingError, Filter};
 
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub type Outcome = Result<(), DrawingAreaErrorKind<std::io::Error>>;
@@ -26,7 +26,7 @@ pub struct Placed<'a> {
     pub picture: &'a RgbImage,
     pub at: (i32, i32),
     pub size: (u32, u32),
-    /// Whether it has areas of one colour, and not many colours.
+    /// Whether it has areas of one colour, and 256 colours or fewer.
     pub is_flat: bool,
 }
 
@@ -58,28 +58,43 @@ pub fn svg(
 
 impl Placed<'_> {
     fn element(&self) -> Result<String, String> {
-        let mut bytes = Cursor::new(Vec::new());
-        let (width, height) = self.picture.dimensions();
-        let color = ExtendedColorType::Rgb8;
-        let (kind, written) = if self.is_flat {
-            let png = PngEncoder::new_with_quality(
-                &mut bytes,
-                CompressionType::Best,
-                FilterType::NoFilter,
-            );
-            ("png", png.write_image(self.picture, width, height, color))
+        let (kind, bytes) = if self.is_flat {
+            let bytes = png_of_few_colors(self.picture);
+            ("png", bytes.map_err(|error| error.to_string())?)
         } else {
-            let jpeg = JpegEncoder::new_with_quality(&mut bytes, 88);
-            ("jpeg", jpeg.write_image(self.picture, width, height, color))
+            let mut bytes = Vec::new();
+            let jpeg = JpegEncoder::new_with_quality(&mut bytes, 88).encode_image(self.picture);
+            jpeg.map_err(|error| error.to_string())?;
+            ("jpeg", bytes)
         };
-        written.map_err(|error| error.to_string())?;
-        let data = STANDARD.encode(bytes.into_inner());
+        let data = STANDARD.encode(bytes);
         let (x, y) = fine(self.at);
         let [width, height] = [self.size.0, self.size.1].map(|side| side * FINE as u32);
         Ok(format!(
             r#"<image x="{x}" y="{y}" width="{width}" height="{height}" preserveAspectRatio="none" href="data:image/{kind};base64,{data}"/>"#
         ))
     }
+}
+
+/// A PNG with a palette.
+fn png_of_few_colors(picture: &RgbImage) -> Result<Vec<u8>, EncodingError> {
+    let colors: BTreeSet<[u8; 3]> = picture.pixels().map(|&Rgb(color)| color).collect();
+    let colors: Vec<[u8; 3]> = colors.into_iter().collect();
+    let index = |&Rgb(color): &Rgb<u8>| {
+        let index = colors.binary_search(&color).expect("it was collected");
+        u8::try_from(index).expect("256 colours or fewer")
+    };
+    let indices: Vec<u8> = picture.pixels().map(index).collect();
+    let mut bytes = Vec::new();
+    let (width, height) = picture.dimensions();
+    let mut encoder = Encoder::new(&mut bytes, width, height);
+    encoder.set_color(ColorType::Indexed);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_palette(colors.concat());
+    encoder.set_compression(Compression::High);
+    encoder.set_filter(Filter::NoFilter);
+    encoder.write_header()?.write_image_data(&indices)?;
+    Ok(bytes)
 }
 
 /// The place of a pixel of the sheet.
