@@ -189,17 +189,21 @@ impl<G: MaskingShadowing> LobeFamily for GgxFamily<G> {
         members.majorant::<G>(
             #[inline(always)]
             |half_vectors| {
+                let [least_cosine, _] = half_vectors.half_angle_cosines();
+                let typical_cosine = half_vectors.typical_half_angle_cosine();
+                let fresnel = Majorant {
+                    greatest: ranges.fresnel.value(least_cosine),
+                    typical: ranges.fresnel.value(typical_cosine),
+                };
                 let [least, most] = ranges.roughness;
                 let range = [cap.splat(least * least), cap.splat(most * most)];
                 let sine = half_vectors.least_squared_sine_to_any(&members.normals);
                 let worst = worst_alpha_squared(range, sine);
                 let typical = worst * (1.0 / ranges.stretch);
                 let ndf = members.ndf(half_vectors, sine, [worst, typical]);
-                let [least_cosine, _] = half_vectors.half_angle_cosines();
-                let typical_cosine = half_vectors.typical_half_angle_cosine();
                 Majorant {
-                    greatest: ranges.fresnel.value(least_cosine) * (ndf.greatest * ranges.stretch),
-                    typical: ranges.fresnel.value(typical_cosine) * ndf.typical,
+                    greatest: fresnel.greatest * (ndf.greatest * ranges.stretch),
+                    typical: fresnel.typical * ndf.typical,
                 }
             },
             #[inline(always)]

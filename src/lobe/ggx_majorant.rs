@@ -121,19 +121,23 @@ impl<N: Single> GgxMembers<N> {
         self.majorant::<G>(
             #[inline(always)]
             |half_vectors| {
-                let ndf = ndf(half_vectors);
                 let greatest = if fresnel.is_gentle {
                     let [least_cosine, _] = half_vectors.half_angle_cosines();
-                    fresnel.falling_maximum(least_cosine) * ndf.greatest
-                } else if cap.must_nest {
-                    fresnel.maximum(half_vectors.sharp_half_angle_cosines()) * ndf.greatest
+                    fresnel.falling_maximum(least_cosine)
                 } else {
-                    half_vectors.greatest_reflected(fresnel, facets, ndf.greatest)
+                    fresnel.maximum(half_vectors.sharp_half_angle_cosines())
                 };
-                let typical_cosine = half_vectors.typical_half_angle_cosine();
+                let typical = fresnel.at(half_vectors.typical_half_angle_cosine());
+                let ndf = ndf(half_vectors);
+                let greatest = greatest * ndf.greatest;
+                let greatest = if fresnel.is_gentle || cap.must_nest {
+                    greatest
+                } else {
+                    half_vectors.greatest_reflected(fresnel, facets, ndf.greatest, greatest)
+                };
                 Majorant {
                     greatest,
-                    typical: fresnel.at(typical_cosine) * ndf.typical,
+                    typical: typical * ndf.typical,
                 }
             },
             masking_root,

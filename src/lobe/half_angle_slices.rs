@@ -129,26 +129,28 @@ impl<'a, N: Single> Slices<'a, N> {
 }
 
 impl<N: Single> HalfVectors<N> {
-    /// An upper bound of F·D, for the greatest D of all half vectors. Of lobes with one incoming direction.
+    /// An upper bound of F·D, for the greatest D of all half vectors, and the product `whole` of that and the greatest F. Of
+    /// lobes with one incoming direction.
     #[inline(always)]
     pub(super) fn greatest_reflected(
         &self,
         fresnel: &FresnelOfOne<N, impl Fn(N) -> N>,
         facets: impl FnOnce() -> Facets<N>,
         ndf: N,
+        whole: N,
     ) -> N {
         let (zero, one) = (ndf.zero(), ndf.splat(1.0));
         let [least, most] = self.sharp_half_angle_cosines();
-        let whole = fresnel.maximum([least, most]) * ndf;
         let critical_cosine = fresnel.critical_cosine;
         let difference = self.difference.length();
+        let may_be_steep = critical_cosine.is_positive() & self.chord.le(difference);
+        if !N::any(may_be_steep) {
+            return whole;
+        }
         // The greatest cosine of a half vector in the cone, but for terms in c².
         let greatest = ((self.length + self.chord * difference * 0.5) * 0.5).min(most);
-        let is_steep = critical_cosine.is_positive()
-            & self.chord.le(difference)
-            & fresnel
-                .at(least)
-                .gt(fresnel.at(greatest) * (1.0 + LEAST_VARIATION));
+        let least_reflected = fresnel.at(greatest) * (1.0 + LEAST_VARIATION);
+        let is_steep = may_be_steep & fresnel.at(least).gt(least_reflected);
         if !N::any(is_steep) {
             return whole;
         }
