@@ -21,6 +21,8 @@ use crate::view::ViewBounds;
 struct TilesInLanes {
     /// The least and the greatest slopes across and down, and depths. Of lanes past the last tile, anything.
     ends: [[Lanes; 2]; 3],
+    /// What holds all tiles.
+    hull: [[f32; 2]; 3],
     slots: Lanes<usize>,
     len: usize,
 }
@@ -28,6 +30,7 @@ struct TilesInLanes {
 impl TilesInLanes {
     const EMPTY: Self = Self {
         ends: [[[NONE[0]; LANES], [NONE[1]; LANES]]; 3],
+        hull: [NONE; 3],
         slots: [0; LANES],
         len: 0,
     };
@@ -38,8 +41,31 @@ impl TilesInLanes {
         for ([least, greatest], range) in self.ends.iter_mut().zip(tile) {
             [least[lane], greatest[lane]] = range;
         }
+        for (hull, [least, greatest]) in self.hull.iter_mut().zip(tile) {
+            *hull = [Real::min(hull[0], least), Real::max(hull[1], greatest)];
+        }
         self.slots[lane] = slot;
         self.len += 1;
+    }
+
+    /// Forgets all tiles.
+    #[inline(always)]
+    fn clear(&mut self) {
+        (self.hull, self.len) = ([NONE; 3], 0);
+    }
+
+    /// What holds all tiles, in each lane.
+    #[inline(always)]
+    fn hull<S: Simd>(&self, simd: S) -> ViewBounds<F32Lanes<S>> {
+        let range = |[least, greatest]: [f32; 2]| {
+            [F32Lanes::new(simd, least), F32Lanes::new(simd, greatest)]
+        };
+        let [across, down, depths] = self.hull;
+        ViewBounds {
+            across: range(across),
+            down: range(down),
+            depths: range(depths),
+        }
     }
 
     /// What each tile spans. Nothing past the last one.
@@ -58,22 +84,6 @@ impl TilesInLanes {
             down: range(down),
             depths: range(depths),
         }
-    }
-}
-
-/// What holds all lanes.
-#[inline(always)]
-fn hull_of_lanes<S: Simd>(bounds: &ViewBounds<F32Lanes<S>>) -> ViewBounds<F32Lanes<S>> {
-    let hull = |[least, greatest]: [F32Lanes<S>; 2]| {
-        [
-            least.splat(least.0.reduce_min()),
-            greatest.splat(greatest.0.reduce_max()),
-        ]
-    };
-    ViewBounds {
-        across: hull(bounds.across),
-        down: hull(bounds.down),
-        depths: hull(bounds.depths),
     }
 }
 
@@ -127,7 +137,7 @@ impl LaneWriter {
                 }
                 if lanes.len == S::f32s::LEN || ([x, y] == last && lanes.len > 0) {
                     self.write_lanes(simd, chunks, &mut lanes, output);
-                    lanes.len = 0;
+                    lanes.clear();
                 }
             }
         }
@@ -142,7 +152,7 @@ impl LaneWriter {
         output: &mut Output,
     ) {
         let tiles = lanes.load(simd);
-        let count = self.find_lights(simd, chunks, &hull_of_lanes(&tiles));
+        let count = self.find_lights(simd, chunks, &lanes.hull(simd));
         if count == 0 {
             return;
         }
