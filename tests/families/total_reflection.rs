@@ -144,6 +144,8 @@ fn check<L: Lobe>(name: &str, width: f32, member: impl Fn(&mut Rng, &Case) -> Me
     let mean = sum / count;
     println!("total reflection, {name} α = {width}: worst {worst:.4}, mean {mean:.4}");
     assert!(worst <= 1.02, "{name}");
+    // Few are near the horizon.
+    assert!(count > 0.7 * CASES as f64, "{name}: {count}");
 }
 
 #[test]
