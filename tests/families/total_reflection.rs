@@ -79,8 +79,8 @@ struct Case {
 
 impl Case {
     /// Of facets that are turned by `width` or less, mostly in the plane of incidence, and of directions within a few times
-    /// `chord`.
-    fn new(rng: &mut Rng, index: f32, width: f64, chord: f64) -> Self {
+    /// `chord`. Glass that absorbs light has an extinction coefficient, too: F is steep there, but not infinitely.
+    fn new(rng: &mut Rng, [index, extinction]: [f32; 2], width: f64, chord: f64) -> Self {
         let critical = f64::from(index).asin();
         let tilt = critical + (2.0 * rng.f64() - 1.0) * width.min(0.3);
         let normal = unit_vector(rng);
@@ -96,7 +96,11 @@ impl Case {
         Self {
             lit,
             outgoing: incoming.turned(across, angle + offset),
-            fresnel: Fresnel::Dielectric(index),
+            fresnel: if extinction > 0.0 {
+                Fresnel::Conductor(index, extinction)
+            } else {
+                Fresnel::Dielectric(index)
+            },
             angle,
         }
     }
@@ -128,12 +132,18 @@ impl Case {
     }
 }
 
-fn check<L: Lobe>(name: &str, width: f32, member: impl Fn(&mut Rng, &Case) -> Member<L>) {
+fn check<L: Lobe>(
+    name: &str,
+    width: f32,
+    extinction: impl Fn(&mut Rng) -> f32,
+    member: impl Fn(&mut Rng, &Case) -> Member<L>,
+) {
     let mut rng = Rng::with_seed(1);
     let (mut worst, mut sum, mut count) = (0.0_f64, 0.0, 0.0);
     for _ in 0..CASES {
         let index = (0.4 + 0.5 * rng.f64()) as f32;
-        let case = Case::new(&mut rng, index, f64::from(width), CHORD);
+        let extinction = extinction(&mut rng);
+        let case = Case::new(&mut rng, [index, extinction], f64::from(width), CHORD);
         let member = member(&mut rng, &case);
         if let Some(ratio) = case.looseness(&mut rng, &member) {
             worst = worst.max(ratio);
@@ -152,15 +162,23 @@ fn check<L: Lobe>(name: &str, width: f32, member: impl Fn(&mut Rng, &Case) -> Me
 fn majorants_become_the_lobes_at_total_reflection() {
     let masking = Masking::HeightCorrelated;
     for alpha in ROUGHNESSES {
-        check("isotropic", alpha, |_, case| {
+        let isotropic = |_: &mut Rng, case: &Case| {
             members::ggx_of::<HeightCorrelated>((alpha, case.fresnel, masking), &case.lit)
-        });
-        check("anisotropic", alpha, |rng, case| {
-            let roughness = stretched(rng, alpha);
-            let tangent = direction(unit_vector(rng));
-            let parameters = (roughness, tangent, case.fresnel, masking);
-            members::anisotropic_of::<HeightCorrelated>(parameters, &case.lit)
-        });
+        };
+        check("isotropic", alpha, |_| 0.0, isotropic);
+        let absorbing = |rng: &mut Rng| log_uniform(rng, 1e-7, 0.1) as f32;
+        check("absorbing", alpha, absorbing, isotropic);
+        check(
+            "anisotropic",
+            alpha,
+            |_| 0.0,
+            |rng, case| {
+                let roughness = stretched(rng, alpha);
+                let tangent = direction(unit_vector(rng));
+                let parameters = (roughness, tangent, case.fresnel, masking);
+                members::anisotropic_of::<HeightCorrelated>(parameters, &case.lit)
+            },
+        );
     }
 }
 
@@ -196,9 +214,14 @@ fn no_lobe_is_greater_at_total_reflection() {
             1 => 1.0 - log_uniform(rng, 1e-5, 0.9),
             _ => 0.1 + 0.8 * rng.f64(),
         };
+        let extinction = match rng.u8(0..4) {
+            0 => log_uniform(rng, 1e-9, 1.0),
+            _ => 0.0,
+        };
+        let numbers = [index, extinction].map(|number| number as f32);
         let (width, chord) = (log_uniform(rng, 1e-4, 1.0), log_uniform(rng, 1e-7, 1.0));
         for _ in 0..CAPS {
-            let case = Case::new(rng, index as f32, width, chord);
+            let case = Case::new(rng, numbers, width, chord);
             let within = cap(case.outgoing, chord * log_uniform(rng, 0.1, 2.0));
             let (alpha, masking) = (width as f32, Masking::HeightCorrelated);
             let one =
