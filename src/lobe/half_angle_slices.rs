@@ -168,14 +168,10 @@ impl<N: Single> HalfVectors<N> {
         // The first slice begins with the greatest cosine of all, so that any steps are safe.
         let (mut sliced, mut ndf_of_rest) = (zero, ndf);
         for slice in 1..SLICES + SLICES_BEYOND {
-            let end = if slice <= SLICES {
-                let share = f32::from(slice) / f32::from(SLICES);
-                let root = last_root.one_minus() * -share + 1.0;
-                critical_cosine + range * root * root
-            } else {
-                let root = f32::from(slice - SLICES) / f32::from(SLICES_BEYOND);
-                critical_cosine - beyond * (root * root)
-            };
+            let before = f32::from(slice.min(SLICES)) / f32::from(SLICES);
+            let root = last_root.one_minus() * -before + 1.0;
+            let after = f32::from(slice.saturating_sub(SLICES)) / f32::from(SLICES_BEYOND);
+            let end = critical_cosine + range * root * root - beyond * (after * after);
             let end = end.max(least);
             sliced = (fresnel.maximum([end, most]) * ndf_of_rest).max(sliced);
             ndf_of_rest = slices.ndf_from(end).min(ndf);
